@@ -1,0 +1,4 @@
+//! Everything of intray that runs on a PC: importers, the grid, the BVH, the blob, pictures, and the
+//! independent f64 reference.
+
+pub mod model;
