@@ -1,3 +1,37 @@
+//! Integer ray tracing for chips without an FPU: a blob in, pixels out, the same bits on every machine.
+//!
+//! No float, no allocation, no panic on a scene that was accepted, no I/O, no `unsafe`. The way of the data:
+//!
+//! # A scene
+//! [`scene::Scene::new_checked`] checks a [`blob`] once; after that no accessor fails. Its sections hold
+//! [`record`]s, read in place.
+//!
+//! # Numbers
+//! [`num`] has the integers, [`space`] the formats and operations of shading, [`colour`] linear light and pixels.
+//!
+//! # Kernels
+//! A [`kernel::Kernel`] is a space with its records, its box test and its triangle test. [`exact`] has
+//! those whose every decision is exact.
+//!
+//! # Tracing
+//! [`camera`] rays go through the [`bvh`], hits are shaded, and [`render`] brings tiles to a sink. A
+//! [`profile`] says what is compiled in; [`stats`] count the work.
 #![no_std]
 #![forbid(unsafe_code)]
-//! core
+
+pub mod blob;
+pub mod bvh;
+pub mod camera;
+pub mod colour;
+pub mod exact;
+pub mod kernel;
+pub mod num;
+pub mod profile;
+pub mod record;
+pub mod render;
+pub mod scene;
+pub mod section;
+mod shade;
+pub mod space;
+mod srgb;
+pub mod stats;

@@ -1,4 +1,10 @@
 //! Everything of intray that runs on a PC: importers, the grid, the BVH, the blob, pictures, and the
 //! independent f64 reference.
 
+pub mod builtin;
+pub mod compare;
+pub mod files;
+pub mod import;
 pub mod model;
+pub mod picture;
+pub mod reference;

@@ -1,0 +1,111 @@
+//! The one check of a scene's contents, after which no accessor fails.
+//!
+//! The tree must be in preorder and the triangles in the order of its leaves, each exactly once: then it is a tree, it
+//! ends, and its depth is what a traversal's stack must hold.
+
+use heapless::Vec;
+
+use super::{BlobError, Header};
+use crate::bvh::{Bvh, Child};
+use crate::colour::Radiance;
+use crate::kernel::{Bounds, Kernel};
+use crate::profile::Need;
+use crate::record::{Light, Material};
+use crate::scene::{MAX_DEPTH, Shading};
+use crate::space::{Space, is_unit_q30};
+
+/// Checks everything that the sections say.
+pub(crate) fn check<K: Kernel>(header: &Header, bvh: &Bvh<'_, K>, shading: &Shading<'_, K>) -> Result<(), BlobError> {
+    tree(header, bvh)?;
+    for (index, triangle) in (0..).zip(bvh.triangles) {
+        let material = K::material(triangle);
+        let vertices = K::vertices(triangle);
+        // Whatever the vertices wrap to, only a record made from vertices on the grid is equal to what is made of them.
+        let consistent = K::triangle(&vertices, material).is_some_and(|made| made == *triangle);
+        let id_exists = bvh.ids.get(index) < header.file_triangles;
+        let normals_exist = shading.normal_indices.is_empty()
+            || shading.normal_indices.triple(index).iter().all(|&n| (n as usize) < shading.normals.len())
+            || shading.is_flat(index);
+        if !(consistent && id_exists && normals_exist && (material as usize) < shading.materials.len()) {
+            return Err(BlobError::Triangle { index });
+        }
+    }
+    let radiances = shading.materials.iter().map(|m| &m.emission).chain(shading.lights.iter().map(|l| &l.radiance));
+    let in_range = radiances
+        .chain([&header.background, &header.ambient])
+        .all(|radiance| Radiance::EXPONENTS.contains(&radiance.exponent));
+    let lights = shading.lights.iter().all(|light| light_is_valid::<K>(header, light));
+    let reserved = shading.materials.iter().all(|m: &Material| m.reserved == 0);
+    let normals = shading.normals.iter().all(|normal| K::Space::is_unit(normal));
+    if in_range && lights && reserved && normals { Ok(()) } else { Err(BlobError::Shading) }
+}
+
+/// A light must be of a kind that the header declares, and where rays may start.
+fn light_is_valid<K: Kernel>(header: &Header, light: &Light) -> bool {
+    match light.kind {
+        Light::POINT => header.needs.has(Need::PointLight) && light.place.iter().all(|c| K::ORIGINS.contains(c)),
+        Light::DIRECTIONAL => header.needs.has(Need::DirectionalLight) && is_unit_q30(light.place),
+        _ => false,
+    }
+}
+
+/// A subtree to be checked: its reference, the node and slot that hold it, and its level.
+type Pending = (u32, Option<(u32, bool)>, u8);
+
+fn tree<K: Kernel>(header: &Header, bvh: &Bvh<'_, K>) -> Result<(), BlobError> {
+    if usize::from(header.depth) > MAX_DEPTH {
+        return Err(BlobError::Depth { stated: header.depth });
+    }
+    let (mut next_node, mut next_triangle) = (0, 0);
+    let mut pending: Vec<Pending, { MAX_DEPTH + 1 }> = Vec::new();
+    let mut current: Pending = (bvh.root, None, 0);
+    loop {
+        let (reference, holder, level) = current;
+        let node = holder.map_or(0, |(node, _)| node);
+        let bounds = holder.and_then(|(node, second)| {
+            let [a, b] = K::boxes(bvh.nodes.get(node as usize)?);
+            Some(if second { b } else { a })
+        });
+        let inside = |content: &Bounds| bounds.is_none_or(|bounds| bounds.contains(content));
+        match Child::unpack(reference) {
+            Child::Node(index) => {
+                if index != next_node {
+                    return Err(BlobError::Tree { node });
+                }
+                let record = bvh.nodes.get(index as usize).ok_or(BlobError::Tree { node })?;
+                next_node += 1;
+                if level >= header.depth {
+                    return Err(BlobError::Depth { stated: header.depth });
+                }
+                if !K::boxes(record).iter().all(inside) {
+                    return Err(BlobError::Bounds { node });
+                }
+                let [first, second] = K::children(record);
+                pending
+                    .push((second, Some((index, true)), level + 1))
+                    .map_err(|_| BlobError::Depth { stated: header.depth })?;
+                current = (first, Some((index, false)), level + 1);
+            }
+            Child::Leaf { first, count } => {
+                if first != next_triangle {
+                    return Err(BlobError::Tree { node });
+                }
+                next_triangle += count;
+                let run = bvh.triangles.get(first as usize..next_triangle as usize);
+                let run = run.ok_or(BlobError::Tree { node })?;
+                if !run.iter().all(|t| inside(&Bounds::of(&K::vertices(t)))) {
+                    return Err(BlobError::Bounds { node });
+                }
+                match pending.pop() {
+                    Some(waiting) => current = waiting,
+                    None => break,
+                }
+            }
+        }
+    }
+    if next_node as usize == bvh.nodes.len() && next_triangle as usize == bvh.triangles.len() {
+        Ok(())
+    } else {
+        Err(BlobError::Tree { node: next_node })
+    }
+}

@@ -1,0 +1,154 @@
+//! The prefix, the header and the checksum.
+
+use serde::{Deserialize, Serialize};
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
+
+use super::BlobError;
+use crate::camera::CameraHeader;
+use crate::colour::{Radiance, Transfer};
+use crate::profile::Needs;
+use crate::section::ALIGN;
+
+/// How a blob begins. The first byte is no text; the line end shows a transfer that changed line ends.
+pub const MAGIC: [u8; 8] = *b"\x89intray\n";
+
+/// The format's version.
+pub const VERSION: u16 = 1;
+
+/// What stands before the header and never changes its layout, so that every version can be told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
+#[repr(C)]
+pub struct Prefix {
+    /// [`MAGIC`].
+    pub magic: [u8; 8],
+    /// [`VERSION`].
+    pub version: u16,
+    /// [`Kernel::ID`](crate::kernel::Kernel::ID).
+    pub kernel: u16,
+    /// The bytes of the header that follows; padding to a multiple of 8 comes after it.
+    pub header_size: u32,
+    /// The bytes of the whole blob, a multiple of 8.
+    pub total_size: u32,
+    /// Zero.
+    pub reserved: u32,
+}
+
+/// The size of a [`Prefix`].
+pub const PREFIX_SIZE: usize = size_of::<Prefix>();
+
+/// Behind the sections: four bytes of zero, and the CRC-32 of all that stands before it.
+pub const TRAILER_SIZE: usize = 8;
+
+/// The number of records in each section.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Counts {
+    /// Tree nodes.
+    pub nodes: u32,
+    /// Triangles, and their ids.
+    pub triangles: u32,
+    /// Triangles with normal indices: none or all.
+    pub smooth: u32,
+    /// Unit normals.
+    pub normals: u32,
+    /// Materials.
+    pub materials: u32,
+    /// Lights.
+    pub lights: u32,
+}
+
+/// How the grid lies in the scene: `scene = origin + grid / scale`. For the host; the device does not read it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SourceGrid {
+    /// The bits of the f64 origin.
+    pub origin_bits: [u64; 3],
+    /// The bits of the f64 scale, grid units per scene unit.
+    pub scale_bits: u64,
+}
+
+/// What the sections cannot say, by postcard.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Header {
+    /// What the scene needs.
+    pub needs: Needs,
+    /// Width and height of the picture.
+    pub size: [u16; 2],
+    /// The camera.
+    pub camera: CameraHeader,
+    /// What a ray that hits nothing sees.
+    pub background: Radiance,
+    /// Light that reaches everything.
+    pub ambient: Radiance,
+    /// How pixels are encoded.
+    pub transfer: Transfer,
+    /// The root of the tree, packed.
+    pub root: u32,
+    /// The levels of nodes: the stack that a traversal needs.
+    pub depth: u8,
+    /// Section sizes.
+    pub counts: Counts,
+    /// Triangles in the file, degenerate ones included: ids are below this.
+    pub file_triangles: u32,
+    /// Where the grid came from.
+    pub source: SourceGrid,
+}
+
+/// CRC-32 (ISO-HDLC: as in PNG and zlib).
+#[must_use]
+pub fn crc32(bytes: &[u8]) -> u32 {
+    // One table of 1 KiB: the slicing tables of the default would take 16 KiB of flash.
+    const CRC: crc::Crc<u32, crc::Table<1>> = crc::Crc::<u32, crc::Table<1>>::new(&crc::CRC_32_ISO_HDLC);
+    CRC.checksum(bytes)
+}
+
+impl Prefix {
+    /// Reads and checks the prefix. Any alignment.
+    ///
+    /// # Errors
+    /// Foreign bytes, another version, a wrong length.
+    pub fn read(bytes: &[u8]) -> Result<Self, BlobError> {
+        let found = bytes.len() as u64;
+        let magic = MAGIC.get(..bytes.len().min(MAGIC.len())).unwrap_or_default();
+        if !bytes.starts_with(magic) {
+            return Err(BlobError::Foreign);
+        }
+        let Ok((prefix, _)) = Self::read_from_prefix(bytes) else {
+            return Err(BlobError::Truncated { expected: (PREFIX_SIZE + TRAILER_SIZE) as u64, found });
+        };
+        if prefix.version != VERSION {
+            return Err(BlobError::Version { found: prefix.version });
+        }
+        let expected = u64::from(prefix.total_size);
+        match expected.cmp(&found) {
+            core::cmp::Ordering::Greater => Err(BlobError::Truncated { expected, found }),
+            core::cmp::Ordering::Less => Err(BlobError::Oversized { expected, found }),
+            core::cmp::Ordering::Equal => Ok(prefix),
+        }
+    }
+}
+
+/// The header and the sections of a blob whose prefix and checksum are right.
+pub(crate) fn open(bytes: &[u8], kernel: u16) -> Result<(Header, &[u8]), BlobError> {
+    let prefix = Prefix::read(bytes)?;
+    if prefix.kernel != kernel {
+        return Err(BlobError::Kernel { found: prefix.kernel, expected: kernel });
+    }
+    let trailer = bytes.len().checked_sub(TRAILER_SIZE).ok_or(BlobError::Header)?;
+    let (body, trailer) = bytes.split_at_checked(trailer).ok_or(BlobError::Header)?;
+    let stated = trailer.last_chunk::<4>().map_or(0, |b| u32::from_le_bytes(*b));
+    let computed = crc32(bytes.get(..bytes.len().saturating_sub(4)).unwrap_or_default());
+    if stated != computed {
+        return Err(BlobError::Checksum { stated, computed });
+    }
+    if !bytes.as_ptr().addr().is_multiple_of(ALIGN) {
+        return Err(BlobError::Misaligned);
+    }
+    let size = prefix.header_size as usize;
+    let padded = size.checked_next_multiple_of(ALIGN).ok_or(BlobError::Header)?;
+    let rest = body.get(PREFIX_SIZE..).ok_or(BlobError::Header)?;
+    let sections = rest.get(padded..).ok_or(BlobError::Header)?;
+    let encoded = rest.get(..size).ok_or(BlobError::Header)?;
+    match postcard::take_from_bytes::<Header>(encoded) {
+        Ok((header, [])) => Ok((header, sections)),
+        _ => Err(BlobError::Header),
+    }
+}

@@ -1,0 +1,166 @@
+//! Linear light in Q16.16 (the 2009 report's Table 1), saturating, and its way to bytes.
+//!
+//! Sums saturate at 65535.99998 instead of wrapping. Products of two unsigned 16-bit factors stay in 32 bits,
+//! so that no 64-bit product is needed on a Cortex-M0.
+
+use fixed::types::U16F16;
+use serde::{Deserialize, Serialize};
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
+
+use crate::num::Triple;
+use crate::srgb;
+
+/// A pixel: red, green, blue, 8 bits each.
+pub type Rgb888 = [u8; 3];
+
+/// How linear light in [0, 1] becomes a byte.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Transfer {
+    /// IEC 61966-2-1.
+    Srgb,
+    /// In proportion.
+    Linear,
+}
+
+/// Light of any strength from 2^-32 to 2^16: `mantissa * 2^exponent / 2^16`, linear RGB.
+///
+/// One exponent for three mantissas: a product with a cosine is one 32-bit multiplication.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, FromBytes, IntoBytes, Immutable, KnownLayout,
+)]
+#[repr(C)]
+pub struct Radiance {
+    /// Mantissas; the largest of them is at least 2^15 unless all are zero.
+    pub mantissa: [u16; 3],
+    /// In `EXPONENTS`.
+    pub exponent: i16,
+}
+
+impl Radiance {
+    /// The exponents that are allowed; a product then shifts right by 1 to 31 bits.
+    pub const EXPONENTS: core::ops::RangeInclusive<i16> = -15..=15;
+
+    /// Whether this adds nothing.
+    #[must_use]
+    pub fn is_black(&self) -> bool {
+        self.mantissa == [0; 3]
+    }
+}
+
+/// Diffuse reflectance, linear RGB: `value / 65535`, up to 1.
+pub type Albedo = [u16; 3];
+
+/// What shading needs of a colour. The integer spaces share [`Rgb16`]; a float space brings its own.
+pub trait Colour: Copy + Default + core::fmt::Debug {
+    /// The cosine of an angle of incidence, in [0, 1].
+    type Cosine: Copy + core::fmt::Debug;
+    /// Light as it stands in the blob.
+    fn constant(radiance: &Radiance) -> Self;
+    /// Light that arrives under an angle.
+    fn lit(radiance: &Radiance, cosine: Self::Cosine) -> Self;
+    /// The sum, saturating.
+    fn plus(self, other: Self) -> Self;
+    /// What a surface of this reflectance gives back.
+    fn reflected(self, albedo: &Albedo) -> Self;
+    /// The pixel: clamped to 1, rounded to nearest.
+    fn encode(self, transfer: Transfer) -> Rgb888;
+}
+
+/// Linear RGB in Q16.16.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Rgb16(pub Triple<U16F16>);
+
+impl Colour for Rgb16 {
+    type Cosine = U16F16;
+
+    #[inline]
+    fn constant(radiance: &Radiance) -> Self {
+        Self::lit(radiance, U16F16::ONE)
+    }
+
+    /// `mantissa cosine` is at most 65535 * 65536 < 2^32 in Q32 of the scaled light; the shift, in 1..=31 by
+    /// [`Radiance::EXPONENTS`], brings it to Q16. Rounded to nearest: a truncated sum would darken.
+    #[inline]
+    fn lit(radiance: &Radiance, cosine: U16F16) -> Self {
+        // Negative exponents down to -15 and positive ones up to 15, so no shift is out of range.
+        let shift = (16 - i32::from(radiance.exponent)).clamp(1, 31) as u32;
+        let cosine_q16 = cosine.to_bits().min(1 << 16);
+        Self(radiance.mantissa.map(|mantissa| {
+            let light_q32 = u32::from(mantissa) * cosine_q16;
+            U16F16::from_bits((light_q32 >> shift) + ((light_q32 >> (shift - 1)) & 1))
+        }))
+    }
+
+    #[inline]
+    fn plus(self, other: Self) -> Self {
+        let ([a, b, c], [d, e, f]) = (self.0, other.0);
+        Self([a.saturating_add(d), b.saturating_add(e), c.saturating_add(f)])
+    }
+
+    /// `light * albedo / 65535`, by two 16-bit halves. The albedo is widened to [0, 2^16] first (65535 becomes 1),
+    /// so that white gives back all. Within one unit of 2^-16, low.
+    #[inline]
+    fn reflected(self, albedo: &Albedo) -> Self {
+        let channel = |light: U16F16, albedo: u16| {
+            let light = light.to_bits();
+            let albedo_q16 = u32::from(albedo) + u32::from(albedo >> 15);
+            // High half: below 2^16 * 2^16 / 2^16 after the shift that the format asks for; it cannot carry out,
+            // since albedo <= 1.
+            let low = ((light & 0xffff) * (albedo_q16 >> 1)) >> 15;
+            U16F16::from_bits((light >> 16) * albedo_q16 + low)
+        };
+        let ([r, g, b], [kr, kg, kb]) = (self.0, *albedo);
+        Self([channel(r, kr), channel(g, kg), channel(b, kb)])
+    }
+
+    fn encode(self, transfer: Transfer) -> Rgb888 {
+        self.0.map(|light| {
+            let light_q16 = light.to_bits().min(1 << 16);
+            match transfer {
+                Transfer::Srgb => srgb::encode(light_q16),
+                // 2^16 * 255 + 2^15 < 2^24.
+                Transfer::Linear => ((light_q16 * 255 + (1 << 15)) >> 16) as u8,
+            }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn gray(bits: u32) -> Rgb16 {
+        Rgb16([U16F16::from_bits(bits); 3])
+    }
+
+    #[test]
+    fn light_at_both_ends_of_its_range() {
+        let brightest = Radiance { mantissa: [u16::MAX; 3], exponent: 15 };
+        let dimmest = Radiance { mantissa: [1 << 15; 3], exponent: -15 };
+        assert_eq!(Rgb16::constant(&brightest), gray(0x7fff_8000));
+        assert_eq!(Rgb16::constant(&dimmest), gray(1)); // 2^-16
+        assert_eq!(Rgb16::lit(&brightest, U16F16::ZERO), gray(0));
+        assert_eq!(gray(u32::MAX).plus(gray(1)), gray(u32::MAX));
+    }
+
+    #[test]
+    fn reflection_is_low_by_less_than_a_unit_and_white_gives_back_all() {
+        for light in [0, 1, 0xffff, 0x1_0000, 0x1_2345, 0xffff_ffff] {
+            assert_eq!(gray(light).reflected(&[u16::MAX; 3]), if light & 1 == 0 { gray(light) } else { gray(light) });
+            for albedo in [0u16, 1, 0x7fff, 0x8000, 0xfffe] {
+                let albedo_q16 = u64::from(albedo) + u64::from(albedo >> 15);
+                let exact = (u64::from(light) * albedo_q16) >> 16;
+                let got = u64::from(gray(light).reflected(&[albedo; 3]).0[0].to_bits());
+                assert!(got <= exact && exact - got <= 1, "{light:#x} {albedo:#x}: {got} {exact}");
+            }
+        }
+    }
+
+    #[test]
+    fn encoding_clamps_and_rounds() {
+        assert_eq!(gray(u32::MAX).encode(Transfer::Linear), [255; 3]);
+        assert_eq!(gray(1 << 15).encode(Transfer::Linear), [128; 3]);
+        assert_eq!(gray(u32::MAX).encode(Transfer::Srgb), [255; 3]);
+        assert_eq!(gray(1 << 15).encode(Transfer::Srgb), [188; 3]);
+    }
+}

@@ -1,0 +1,117 @@
+//! Child boxes in pairs, and the conservative slab test (Kay & Kajiya 1986; Williams et al. 2005).
+//!
+//! **No false miss.** Let a ray hit a triangle in the box at t, and let T be t in the unit of `T_BITS`. Along each
+//! axis the hit lies between the near and the far plane, so true entry <= T <= true exit. The computed entry is never
+//! above the true one ([`Reciprocal`]: a lower bound where the difference is positive, and clamped to 0 where it is
+//! negative, while T >= 0). The computed exit is below the true one by at most `SLACK` where that is not beyond
+//! `T_MAX` (each width's argument). So entry <= exit + SLACK, and entry <= limit + SLACK for every limit that is at
+//! most `SLACK` below T.
+//!
+//! High corners are stored plus one: a ray that does not move along an axis and lies in the box's last plane then has
+//! a difference of 1 to it, not 0.
+
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
+
+use super::ray::Ray;
+use super::width::{Reciprocal, Width};
+use crate::kernel::Bounds;
+use crate::num::Word;
+use crate::record::Record;
+
+type Plane<W> = <<W as Width>::Node as BoxNode>::Plane;
+
+/// Two child boxes: child, low or high (plus one), axis.
+pub type Planes<P> = [[[P; 3]; 2]; 2];
+
+/// A node's record, for planes of one type.
+pub trait BoxNode: Record {
+    /// A plane's coordinate, 0 to `2^GRID_BITS`.
+    type Plane: Copy + TryFrom<i32> + Default;
+    /// The record.
+    fn new(planes: Planes<Self::Plane>, children: [u32; 2]) -> Self;
+    /// The boxes of its children.
+    fn planes(&self) -> &Planes<Self::Plane>;
+    /// Packed references; see [`bvh`](crate::bvh).
+    fn children(&self) -> [u32; 2];
+}
+
+// zerocopy proves the absence of padding for concrete types only.
+macro_rules! box_node {
+    ($(#[$doc:meta])* $name:ident, $plane:ty) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
+        #[repr(C)]
+        pub struct $name {
+            planes: Planes<$plane>,
+            children: [u32; 2],
+        }
+
+        impl BoxNode for $name {
+            type Plane = $plane;
+            #[inline]
+            fn new(planes: Planes<$plane>, children: [u32; 2]) -> Self {
+                Self { planes, children }
+            }
+            #[inline(always)]
+            fn planes(&self) -> &Planes<$plane> {
+                &self.planes
+            }
+            #[inline(always)]
+            fn children(&self) -> [u32; 2] {
+                self.children
+            }
+        }
+    };
+}
+
+box_node!(
+    /// Two children on a 14-bit grid, in 32 bytes.
+    BoxNode14,
+    u16
+);
+box_node!(
+    /// Two children on a 29-bit grid, in 56 bytes.
+    BoxNode29,
+    u32
+);
+
+/// The node's record. Corners must lie on the grid.
+pub(super) fn pack<N: BoxNode>(boxes: [Bounds; 2], children: [u32; 2]) -> N {
+    let plane = |c: i32| N::Plane::try_from(c).unwrap_or_default();
+    N::new(boxes.map(|b| [b.low.map(plane), b.high.map(|c| plane(c + 1))]), children)
+}
+
+/// The boxes of a record.
+pub(super) fn unpack<W: Width>(node: &W::Node) -> [Bounds; 2] {
+    node.planes().map(|[low, high]| Bounds {
+        low: low.map(|p| p.into().low_i32()),
+        high: high.map(|p| p.into().low_i32().wrapping_sub(1)),
+    })
+}
+
+/// Where the ray enters each child, if it does before the limit.
+#[inline(always)]
+pub(super) fn enter<W: Width>(ray: &Ray<W>, node: &W::Node, limit: W::Word) -> [Option<W::Word>; 2] {
+    let [first, second] = node.planes();
+    [slab(ray, first, limit), slab(ray, second, limit)]
+}
+
+#[inline(always)]
+fn slab<W: Width>(ray: &Ray<W>, planes: &[[Plane<W>; 3]; 2], limit: W::Word) -> Option<W::Word> {
+    let [x, y, z] = [axis(ray, planes, 0), axis(ray, planes, 1), axis(ray, planes, 2)];
+    let entry = x.0.max(y.0).max(z.0).max(W::Word::ZERO);
+    let exit = x.1.min(y.1).min(z.1).min(limit);
+    (entry <= exit + W::SLACK).then_some(entry)
+}
+
+/// Entry and exit along one axis.
+#[inline(always)]
+fn axis<W: Width>(ray: &Ray<W>, planes: &[[Plane<W>; 3]; 2], axis: usize) -> (W::Word, W::Word) {
+    let negative = ray.negative[axis];
+    let (near, far): (W::Word, W::Word) =
+        (planes[usize::from(negative)][axis].into(), planes[usize::from(!negative)][axis].into());
+    let origin = ray.origin[axis];
+    let (near, far) = if negative { (origin - near, origin - far) } else { (near - origin, far - origin) };
+    let reciprocal = ray.reciprocal[axis];
+    (reciprocal.along(near), reciprocal.along(far))
+}

@@ -1,0 +1,146 @@
+//! The exact kernels: one algorithm, instantiated by a [`Width`].
+//!
+//! Whether a ray hits a triangle is decided by the signs of three integers that are computed without error, and
+//! which of two hits is nearer by comparing fractions. A filter in one machine word decides all but the closest
+//! calls. Boxes are conservative, so a hit is never lost. Nearest means: the smallest (t, id).
+//!
+//! The arithmetic is that of Kensler & Shirley, "Optimizing Ray-Triangle Intersection via Automated Search" (2006),
+//! as integers; the filter is of the kind of Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust
+//! Geometric Predicates" (1997).
+
+mod boxes;
+mod ray;
+mod resolve;
+mod triangle;
+mod width;
+mod width14;
+mod width29;
+
+pub use boxes::{BoxNode, BoxNode14, BoxNode29};
+pub use ray::Ray;
+pub use triangle::{Depth, TriangleRecord};
+pub use width::{Reciprocal, Wide, Width};
+pub use width14::Width14;
+pub use width29::Width29;
+
+use core::cmp::Ordering;
+use core::marker::PhantomData;
+use core::ops::Range;
+
+use crate::camera::Camera;
+use crate::kernel::{Bounds, Kernel, NONE, Surface, Vertices};
+use crate::num::{Triple, Word};
+use crate::space::Space;
+
+/// The exact kernel of a width.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Exact<W>(PhantomData<W>);
+
+/// 14-bit grid, 32-bit hot path: for a Cortex-M0 and small pictures.
+pub type Exact14 = Exact<Width14>;
+
+/// 29-bit grid, 64-bit hot path: for hosts, and the best picture.
+pub type Exact29 = Exact<Width29>;
+
+impl<W: Width> Kernel for Exact<W> {
+    const ID: u16 = W::ID;
+    const NAME: &'static str = W::NAME;
+    const GRID_BITS: u32 = W::GRID_BITS;
+    const MARGIN: i32 = W::MARGIN;
+    const ORIGINS: Range<i32> = W::ORIGINS;
+    const DIRECTION_BITS: u32 = W::DIRECTION_BITS;
+    const MATERIALS_MAX: u32 = W::MATERIALS_MAX;
+
+    type Space = W::Space;
+    type Word = W::Word;
+    type Node = W::Node;
+    type Triangle = TriangleRecord<W::Short>;
+    type Ray = Ray<W>;
+    type Distance = W::Word;
+    type Depth = Depth<W>;
+
+    fn node(boxes: [Bounds; 2], children: [u32; 2]) -> Self::Node {
+        boxes::pack(boxes, children)
+    }
+
+    #[inline]
+    fn children(node: &Self::Node) -> [u32; 2] {
+        node.children()
+    }
+
+    fn boxes(node: &Self::Node) -> [Bounds; 2] {
+        boxes::unpack::<W>(node)
+    }
+
+    fn triangle(vertices: &Vertices, material: u32) -> Option<Self::Triangle> {
+        triangle::pack::<W>(vertices, material)
+    }
+
+    fn vertices(triangle: &Self::Triangle) -> Vertices {
+        triangle::vertices::<W>(triangle)
+    }
+
+    #[inline]
+    fn material(triangle: &Self::Triangle) -> u32 {
+        W::split_meta(triangle.meta()).1
+    }
+
+    #[inline]
+    fn primary(camera: &Camera<W::Word>, x: u16, y: u16) -> Option<Ray<W>> {
+        Ray::new(camera.eye(), camera.direction(x, y), NONE)
+    }
+
+    #[inline]
+    fn ray(origin: Triple<W::Word>, direction: Triple<W::Word>, skip: u32) -> Option<Ray<W>> {
+        Ray::new(origin, direction, skip)
+    }
+
+    #[inline]
+    fn segment(from: &Surface<W::Space>, to: Triple<i32>, skip: u32) -> Option<Ray<W>> {
+        Ray::segment(W::stand_off(from), to.map(W::Word::from_i32), skip)
+    }
+
+    #[inline]
+    fn leaving(from: &Surface<W::Space>, direction: <W::Space as Space>::Unit, skip: u32) -> Option<Ray<W>> {
+        Ray::new(W::stand_off(from), W::direction(direction), skip)
+    }
+
+    #[inline]
+    fn skip(ray: &Ray<W>) -> u32 {
+        ray.skip
+    }
+
+    #[inline]
+    fn reach(ray: &Ray<W>) -> W::Word {
+        ray.reach_limit()
+    }
+
+    #[inline]
+    fn enter(ray: &Ray<W>, node: &Self::Node, limit: W::Word) -> [Option<W::Word>; 2] {
+        boxes::enter(ray, node, limit)
+    }
+
+    #[inline]
+    fn intersect(ray: &Ray<W>, triangle: &Self::Triangle) -> Option<Depth<W>> {
+        triangle::intersect(ray, triangle)
+    }
+
+    #[inline]
+    fn limit(depth: &Depth<W>) -> W::Word {
+        depth.t
+    }
+
+    #[inline]
+    fn order(a: &Depth<W>, b: &Depth<W>) -> Ordering {
+        triangle::order(a, b)
+    }
+
+    #[inline]
+    fn within(entry: W::Word, limit: W::Word) -> bool {
+        entry <= limit + W::SLACK
+    }
+
+    fn resolve(ray: &Ray<W>, triangle: &Self::Triangle) -> Surface<W::Space> {
+        resolve::resolve(ray, triangle)
+    }
+}

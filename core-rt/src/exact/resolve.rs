@@ -1,0 +1,28 @@
+//! From (ray, id) to the hit point, the normal and the barycentrics: one function for every traversal.
+
+use super::ray::Ray;
+use super::triangle::{TriangleRecord, fraction, parts};
+use super::width::Width;
+use crate::kernel::Surface;
+use crate::num::{Triple, cross, sub};
+use crate::space::Space;
+
+/// See [`Kernel::resolve`](crate::kernel::Kernel::resolve).
+pub(super) fn resolve<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> Surface<W::Space> {
+    let [v0, e1, e2] = parts::<W>(triangle);
+    let s = sub(ray.origin, v0);
+    let r = cross(s, ray.direction);
+    let (numerator, denominator) = fraction::<W>(ray, s, e1, e2);
+    let facing = W::dot(ray.direction, cross(e1, e2)) < W::Wide::default();
+    // U and V carry the sign of det.
+    let positive = |value: W::Wide| if facing { value } else { -value };
+    let (u, v) = (positive(W::dot(e2, r)), positive(-W::dot(e1, r)));
+    let normal: Triple<W::Word> = if facing { cross(e1, e2) } else { cross(e2, e1) };
+    Surface {
+        point: W::point(ray.origin, ray.direction, numerator, denominator),
+        // A record's triangle has area, so its normal is not zero; the default is for a record that lies.
+        normal: W::normalise(normal).unwrap_or_else(|| W::Space::unit_from_q30([0, 0, 1 << 30])),
+        u: W::fraction(u, denominator),
+        v: W::fraction(v, denominator),
+    }
+}

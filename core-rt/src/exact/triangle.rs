@@ -1,0 +1,227 @@
+//! The triangle test: exact signs, a filter in one word, hits in exact order.
+//!
+//! With S = o - v0, R = S x D and N = e1 x e2, the barycentrics times the determinant are
+//!
+//! U = e2 . R,  V = -e1 . R,  det = -D . N,  W = det - U - V,  tn = S . N,  t = tn / det.
+//!
+//! The line through the ray meets the triangle iff U, V and W have one sign (zero belongs to both: edges are inclusive)
+//! and det is not 0. It is a hit iff t > 0.
+//!
+//! **Filter.** Let e be below 2^b for all edges e of the triangle (b is its `shift`), and q = R >> b. Then
+//! u = e2 . q is U / 2^b low or high by less than |e2|_1, since each component of R / 2^b - q is in [0, 1). So
+//! |u - U / 2^b| < 3 * 2^b, and likewise v. `|u| <= 3 * 2^b * 2^(CROSS_BITS - b)` fits the word.
+//! The record keeps n = N >> k, k = max(0, 2 b - NORMAL_BITS). Then -(D . n) is det / 2^k within |D|_1, and shifted right
+//! by b - k it is det / 2^b within (3 * 2^DIRECTION_BITS >> (b - k)) + 1. W is a triple product with the third edge, as
+//! U and V are with theirs, so W / 2^b fits the word although its terms' sum may not: it is computed by wrapping.
+//! Where the filter is undecided, the same sums are formed in [`Width::Wide`], without error.
+
+use core::cmp::Ordering;
+
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
+
+use super::ray::Ray;
+use super::width::Width;
+use crate::kernel::Vertices;
+use crate::num::{Triple, Word, bits, cross, dot, sub};
+
+/// v0, e1, e2, n = N >> k (three fields each), then shift and material.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
+#[repr(transparent)]
+pub struct TriangleRecord<T>([T; 13]);
+
+impl<T: Copy> TriangleRecord<T> {
+    #[inline(always)]
+    fn row<W: Word>(&self, first: usize) -> Triple<W>
+    where
+        T: Into<W>,
+    {
+        // `first` is a constant of the callers, so the checks fold away.
+        [self.0[first].into(), self.0[first + 1].into(), self.0[first + 2].into()]
+    }
+
+    #[inline(always)]
+    fn v0<W: Word>(&self) -> Triple<W>
+    where
+        T: Into<W>,
+    {
+        self.row(0)
+    }
+
+    #[inline(always)]
+    fn e1<W: Word>(&self) -> Triple<W>
+    where
+        T: Into<W>,
+    {
+        self.row(3)
+    }
+
+    #[inline(always)]
+    fn e2<W: Word>(&self) -> Triple<W>
+    where
+        T: Into<W>,
+    {
+        self.row(6)
+    }
+
+    #[inline(always)]
+    fn n<W: Word>(&self) -> Triple<W>
+    where
+        T: Into<W>,
+    {
+        self.row(9)
+    }
+
+    #[inline(always)]
+    pub(super) fn meta(&self) -> T {
+        self.0[12]
+    }
+}
+
+/// The record, or `None` where the triangle has no area, is off the grid, or its material is too high.
+pub(super) fn pack<W: Width>(vertices: &Vertices, material: u32) -> Option<TriangleRecord<W::Short>> {
+    let grid = W::MARGIN..(1 << W::GRID_BITS) - W::MARGIN;
+    if !vertices.as_flattened().iter().all(|c| grid.contains(c)) {
+        return None;
+    }
+    let [v0, v1, v2] = vertices.map(|v| v.map(i64::from));
+    let (e1, e2) = (sub(v1, v0), sub(v2, v0));
+    let normal = cross(e1, e2); // below 2^(2 b) <= 2^58: twice the area of a projection onto a square of side 2^b
+    if normal == [0; 3] {
+        return None;
+    }
+    let shift = bits(e1).max(bits(e2)).max(bits(sub(v2, v1)));
+    let n = normal.map(|c| c >> (2 * shift).saturating_sub(W::NORMAL_BITS));
+    let mut record = [W::Short::default(); 13];
+    for (field, value) in record.iter_mut().zip([v0, e1, e2, n].as_flattened()) {
+        *field = W::Short::try_from(*value).ok()?;
+    }
+    let [.., meta] = &mut record;
+    *meta = W::join_meta(shift, material)?;
+    Some(TriangleRecord(record))
+}
+
+/// The corners.
+pub(super) fn vertices<W: Width>(triangle: &TriangleRecord<W::Short>) -> Vertices {
+    let [v0, e1, e2]: [Triple<W::Word>; 3] = [triangle.v0(), triangle.e1(), triangle.e2()];
+    let add = |e: Triple<W::Word>| [v0[0] + e[0], v0[1] + e[1], v0[2] + e[2]];
+    [v0, add(e1), add(e2)].map(|v| v.map(Word::low_i32))
+}
+
+/// A hit: t as an exact fraction of positive integers, and about t in `T_BITS`.
+#[derive(Clone, Copy, Debug)]
+pub struct Depth<W: Width> {
+    /// The numerator of t.
+    pub numerator: W::Wide,
+    /// The denominator of t.
+    pub denominator: W::Wide,
+    /// t within [`Width::SLACK`].
+    pub(super) t: W::Word,
+}
+
+/// What is known of a sign after the filter.
+#[inline(always)]
+fn sign<T: Word>(value: T, error: T) -> (bool, bool) {
+    (value >= error, value <= -error)
+}
+
+/// The hit, if there is one with 0 < t within the ray's reach.
+#[inline(always)]
+pub(super) fn intersect<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> Option<Depth<W>> {
+    let (shift, _) = W::split_meta(triangle.meta());
+    let s: Triple<W::Word> = sub(ray.origin, triangle.v0());
+    let r = cross(s, ray.direction);
+    let q = r.map(|c| c >> shift);
+    let (e1, e2): (Triple<W::Word>, Triple<W::Word>) = (triangle.e1(), triangle.e2());
+
+    let edge_error = (W::Word::ONE + W::Word::ONE + W::Word::ONE) << shift;
+    let u = dot(e2, q);
+    let v = -dot(e1, q);
+    let (u_positive, u_negative) = sign(u, edge_error);
+    let (v_positive, v_negative) = sign(v, edge_error);
+    if (u_positive && v_negative) || (u_negative && v_positive) {
+        return None;
+    }
+
+    // b - k = min(b, NORMAL_BITS - b), and b <= GRID_BITS < NORMAL_BITS.
+    let down = shift.min(W::NORMAL_BITS - shift);
+    let det = -dot(ray.direction, triangle.n()) >> down;
+    let det_error = (((W::Word::ONE + W::Word::ONE + W::Word::ONE) << W::DIRECTION_BITS) >> down) + W::Word::ONE;
+    let w = det.wrapping_sub(u).wrapping_sub(v);
+    let (w_positive, w_negative) = sign(w, det_error + edge_error + edge_error);
+    if (w_positive && (u_negative || v_negative)) || (w_negative && (u_positive || v_positive)) {
+        return None;
+    }
+
+    let all_positive = u_positive && v_positive && w_positive;
+    let all_negative = u_negative && v_negative && w_negative;
+    if !(all_positive || all_negative) && !inside::<W>(ray, e1, e2, r) {
+        return None;
+    }
+    depth(ray, s, e1, e2)
+}
+
+/// Whether the line through the ray meets the triangle, without error. Rare, so kept out of line.
+#[cold]
+#[inline(never)]
+fn inside<W: Width>(ray: &Ray<W>, e1: Triple<W::Word>, e2: Triple<W::Word>, r: Triple<W::Word>) -> bool {
+    let zero = W::Wide::default();
+    let u = W::dot(e2, r);
+    let v = -W::dot(e1, r);
+    let det = -W::dot(ray.direction, cross(e1, e2));
+    let w = det - u - v;
+    (u >= zero && v >= zero && w >= zero && det > zero) || (u <= zero && v <= zero && w <= zero && det < zero)
+}
+
+/// t, for a line that meets the triangle.
+#[inline]
+fn depth<W: Width>(
+    ray: &Ray<W>,
+    s: Triple<W::Word>,
+    e1: Triple<W::Word>,
+    e2: Triple<W::Word>,
+) -> Option<Depth<W>> {
+    let (numerator, denominator) = fraction::<W>(ray, s, e1, e2);
+    if numerator <= W::Wide::default() {
+        return None;
+    }
+    // Shifts: tn below 2^(3 + CROSS_BITS + GRID_BITS) has room for DIRECTION_BITS more in Wide.
+    let within_reach = match ray.reach {
+        None => true,
+        Some(reach @ 0..) => numerator < denominator << reach.unsigned_abs(),
+        Some(reach) => numerator << reach.unsigned_abs() < denominator,
+    };
+    within_reach.then(|| Depth { numerator, denominator, t: W::depth(numerator, denominator) })
+}
+
+/// tn and det, with det made positive.
+#[inline]
+pub(super) fn fraction<W: Width>(
+    ray: &Ray<W>,
+    s: Triple<W::Word>,
+    e1: Triple<W::Word>,
+    e2: Triple<W::Word>,
+) -> (W::Wide, W::Wide) {
+    let normal = cross(e1, e2);
+    let det = -W::dot(ray.direction, normal);
+    let numerator = W::dot(s, normal);
+    if det < W::Wide::default() { (-numerator, -det) } else { (numerator, det) }
+}
+
+/// The exact order of t, by the approximate one where that is certain.
+#[inline]
+pub(super) fn order<W: Width>(a: &Depth<W>, b: &Depth<W>) -> Ordering {
+    let apart = W::SLACK + W::SLACK;
+    if a.t + apart < b.t {
+        Ordering::Less
+    } else if b.t + apart < a.t {
+        Ordering::Greater
+    } else {
+        W::order((a.numerator, a.denominator), (b.numerator, b.denominator))
+    }
+}
+
+/// The pieces that resolving a hit needs.
+#[inline(always)]
+pub(super) fn parts<W: Width>(triangle: &TriangleRecord<W::Short>) -> [Triple<W::Word>; 3] {
+    [triangle.v0(), triangle.e1(), triangle.e2()]
+}

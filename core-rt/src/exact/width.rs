@@ -1,0 +1,116 @@
+//! What an exact kernel is parametrised by: the widths, and the operations whose best form depends on them.
+
+use core::cmp::Ordering;
+use core::fmt::Debug;
+use core::ops::{Add, Neg, Range, Shl, Sub};
+
+use super::boxes::BoxNode;
+use crate::kernel::Surface;
+use crate::num::{Triple, Word};
+use crate::record::Record;
+use crate::space::Space;
+
+/// An integer that holds an exact triple product: `i64` on 14-bit grids, `i128` on 29-bit ones.
+pub trait Wide:
+    Copy
+    + Ord
+    + Debug
+    + Default
+    + Send
+    + Sync
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Neg<Output = Self>
+    + Shl<u32, Output = Self>
+    + 'static
+{
+}
+
+impl Wide for i64 {}
+impl Wide for i128 {}
+
+/// The reciprocal of a direction's component, never above the true one.
+pub trait Reciprocal: Copy + Debug {
+    /// The word of grid differences.
+    type Word: Word;
+    /// From the magnitude of a component; 0 stands for "does not move along this axis".
+    fn new(magnitude: Self::Word) -> Self;
+    /// `delta / magnitude` in the unit of [`Width::SLACK`], rounded down; not above the true value where `delta` is
+    /// not negative, negative where `delta` is. Where the magnitude is 0 and `delta` at least 1, at least every
+    /// limit that a hit can have.
+    fn along(self, delta: Self::Word) -> Self::Word;
+}
+
+/// The widths of an exact kernel.
+///
+/// | | vertices | origins | directions | R = S x D | exact products |
+/// | --- | --- | --- | --- | --- | --- |
+/// | symbol | `2^GRID_BITS` | `ORIGINS` | `2^DIRECTION_BITS` | `2^CROSS_BITS` | `Wide` |
+///
+/// For all vertices v and origins o: `|o - v| 2^DIRECTION_BITS <= 2^(CROSS_BITS - 1)`, so that R fits `CROSS_BITS`;
+/// and `3 * 2^CROSS_BITS` fits the word.
+pub trait Width: Copy + Debug + Default + Send + Sync + 'static {
+    /// See [`Kernel::ID`](crate::kernel::Kernel::ID).
+    const ID: u16;
+    /// See [`Kernel::NAME`](crate::kernel::Kernel::NAME).
+    const NAME: &'static str;
+    /// See [`Kernel::GRID_BITS`](crate::kernel::Kernel::GRID_BITS).
+    const GRID_BITS: u32;
+    /// See [`Kernel::MARGIN`](crate::kernel::Kernel::MARGIN).
+    const MARGIN: i32;
+    /// See [`Kernel::ORIGINS`](crate::kernel::Kernel::ORIGINS).
+    const ORIGINS: Range<i32>;
+    /// Directions are below 2 to this, and at least 2 to one less in their largest component.
+    const DIRECTION_BITS: u32;
+    /// Stored normals are at most 2 to this: `2^(NORMAL_BITS + DIRECTION_BITS) * 3` fits the word.
+    const NORMAL_BITS: u32;
+    /// See [`Kernel::MATERIALS_MAX`](crate::kernel::Kernel::MATERIALS_MAX).
+    const MATERIALS_MAX: u32;
+    /// Fractional bits of the `t` that boxes and depths are compared in.
+    const T_BITS: u32;
+    /// By how much, in `t`, an exit of a box may be low and a depth wrong. Each width proves its own.
+    const SLACK: Self::Word;
+    /// No hit has a larger `t`.
+    const T_MAX: Self::Word;
+
+    /// What it shades in.
+    type Space: Space;
+    /// The word of the hot path.
+    type Word: Word;
+    /// The word of exact decisions.
+    type Wide: Wide;
+    /// A signed coordinate in a triangle's record.
+    type Short: Record + Into<Self::Word> + TryFrom<i64> + Default;
+    /// The record of a node.
+    type Node: BoxNode<Plane: Into<Self::Word>>;
+    /// See [`Reciprocal`].
+    type Reciprocal: Reciprocal<Word = Self::Word>;
+
+    /// The exact `a . b`, for `a` an edge, an origin's offset or a direction and `b` a cross product of two of these.
+    fn dot(a: Triple<Self::Word>, b: Triple<Self::Word>) -> Self::Wide;
+    /// The order of `a.0 / a.1` and `b.0 / b.1`, exactly; all positive.
+    fn order(a: (Self::Wide, Self::Wide), b: (Self::Wide, Self::Wide)) -> Ordering;
+    /// `numerator / denominator` with [`Width::T_BITS`], within [`Width::SLACK`] of true; both positive, and the
+    /// quotient the `t` of a hit.
+    fn depth(numerator: Self::Wide, denominator: Self::Wide) -> Self::Word;
+    /// `numerator / denominator` in [0, 1], never high.
+    fn fraction(numerator: Self::Wide, denominator: Self::Wide) -> <Self::Space as Space>::Fraction;
+    /// `origin + direction * numerator / denominator`.
+    fn point(
+        origin: Triple<Self::Word>,
+        direction: Triple<Self::Word>,
+        numerator: Self::Wide,
+        denominator: Self::Wide,
+    ) -> <Self::Space as Space>::Point;
+    /// `vector` with length 1; `None` for zero.
+    fn normalise(vector: Triple<Self::Word>) -> Option<<Self::Space as Space>::Unit>;
+    /// The grid point from which rays leave a surface, off it on its normal's side. Each width proves that no ray
+    /// that leaves to that side meets the surface's plane again.
+    fn stand_off(surface: &Surface<Self::Space>) -> Triple<Self::Word>;
+    /// A unit vector as a direction.
+    fn direction(unit: <Self::Space as Space>::Unit) -> Triple<Self::Word>;
+    /// Packs a triangle's shift and material into its last field.
+    fn join_meta(shift: u32, material: u32) -> Option<Self::Short>;
+    /// The shift and the material.
+    fn split_meta(meta: Self::Short) -> (u32, u32);
+}

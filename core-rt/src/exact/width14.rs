@@ -1,0 +1,173 @@
+//! 14 bits: everything on the hot path in `i32`, exact decisions in `i64`.
+//!
+//! | value | bound | fits |
+//! | --- | --- | --- |
+//! | vertices, edges | < 2^14 | `i16` |
+//! | origins - vertices | < 2^15 | |
+//! | directions D | < 2^13, largest >= 2^12 | |
+//! | R = S x D | < 2^29 | `i32` |
+//! | N = e1 x e2 | < 2^28 (area of a projection) | `i32` |
+//! | U, V, det, tn | < 3 * 2^14 * 2^29 < 2^45 | `i64` |
+//! | t | < 2^15 / 2^12 = 2^3 | Q13 in 16 bits |
+
+use core::cmp::Ordering;
+use core::ops::Range;
+
+use super::boxes::BoxNode14;
+use super::width::{Reciprocal, Width};
+use crate::kernel::Surface;
+use crate::num::{Triple, reciprocal, round_shift};
+use crate::space::grid14::{POINT_BITS, normalise};
+use crate::space::{Grid14, Space};
+
+/// The widths of `exact14`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Width14;
+
+/// How far rays start above a surface, in grid units.
+///
+/// The resolved point is within 1/4 + 1/32 of the true one along each axis (t is within 2^-16, D below 2^13, and the
+/// rounding to Q4), the unit normal within 2^-12 along each axis, and the rounding to the grid is 1/2. Along the
+/// normal that is at most sqrt(3) (9/32 + 1/2 + 2^-11) < 1.36 < 2 (1 - 2^-11): the origin is on the normal's side of the
+/// plane, and a ray that leaves to that side does not meet it.
+const STAND_OFF: i32 = 2;
+
+/// mantissa, shift: `delta * mantissa >> shift` is t in Q13.
+#[derive(Clone, Copy, Debug)]
+pub struct Reciprocal14 {
+    mantissa: i32,
+    shift: u32,
+}
+
+impl Reciprocal for Reciprocal14 {
+    type Word = i32;
+
+    #[inline]
+    fn new(magnitude: i32) -> Self {
+        if magnitude == 0 {
+            // delta >= 1 becomes 2^16 - 1, which no t in Q13 exceeds by more than SLACK.
+            return Self { mantissa: 0xffff, shift: 0 };
+        }
+        // mantissa / 2^(16 + log2 d) * 2^13
+        let r = reciprocal(magnitude as u32);
+        Self { mantissa: r.mantissa as i32, shift: r.log2_d + 3 }
+    }
+
+    /// |delta| <= 2^15 and mantissa < 2^16: the product is below 2^31.
+    #[inline(always)]
+    fn along(self, delta: i32) -> i32 {
+        (delta * self.mantissa) >> self.shift
+    }
+}
+
+impl Width for Width14 {
+    const ID: u16 = 14;
+    const NAME: &'static str = "exact14";
+    const GRID_BITS: u32 = 14;
+    const MARGIN: i32 = 0;
+    /// |o - v| < 2^15 for every vertex v in [0, 2^14), with room for [`STAND_OFF`] beyond the grid.
+    const ORIGINS: Range<i32> = -(1 << 14)..(1 << 15);
+    const DIRECTION_BITS: u32 = 13;
+    const NORMAL_BITS: u32 = 15;
+    const MATERIALS_MAX: u32 = (1 << 12) - 1;
+    const T_BITS: u32 = 13;
+    /// An exit T <= 2^16 is computed low by less than T 2^-14 (the reciprocal) + 1 (the shift) <= 5. A depth is high by
+    /// less than 2^16 2^-15 = 2 (its denominator is truncated to 16 bits) and low by less than 2^16 2^-14 + 2 (its
+    /// numerator, truncated, times a mantissa of 2^16 / 2^15) + 1 = 7.
+    const SLACK: i32 = 8;
+    const T_MAX: i32 = 1 << 16;
+
+    type Space = Grid14;
+    type Word = i32;
+    type Wide = i64;
+    type Short = i16;
+    type Node = BoxNode14;
+    type Reciprocal = Reciprocal14;
+
+    /// By 14-bit limbs of b, so that a Cortex-M0 needs `muls` alone. For |a| <= 2^15 and |b| <= 2^28 (normals), or
+    /// |a| < 2^14 and |b| < 2^29 (R): high sum <= 3 * 2^29, low sum < 3 * 2^29.
+    #[inline]
+    fn dot(a: Triple<i32>, b: Triple<i32>) -> i64 {
+        let high = a[0] * (b[0] >> 14) + a[1] * (b[1] >> 14) + a[2] * (b[2] >> 14);
+        let low = a[0] * (b[0] & 0x3fff) + a[1] * (b[1] & 0x3fff) + a[2] * (b[2] & 0x3fff);
+        (i64::from(high) << 14) + i64::from(low)
+    }
+
+    #[inline]
+    fn order(a: (i64, i64), b: (i64, i64)) -> Ordering {
+        (i128::from(a.0) * i128::from(b.1)).cmp(&(i128::from(b.0) * i128::from(a.1)))
+    }
+
+    /// With the denominator scaled to 16 bits, the numerator is below 2^19, and 2^16 after three more bits are dropped;
+    /// t = numerator / denominator in Q13 = (numerator / 2^3) mantissa / 2^15.
+    #[inline]
+    fn depth(numerator: i64, denominator: i64) -> i32 {
+        let bits = i64::BITS - denominator.leading_zeros();
+        let scaled = |value: i64, bits: u32| if bits > 16 { value >> (bits - 16) } else { value << (16 - bits) };
+        let r = reciprocal(scaled(denominator, bits) as u32);
+        ((scaled(numerator, bits) as u32 >> 3) * r.mantissa >> 15) as i32
+    }
+
+    /// Low by less than 2^-14 + 2^-14 of its value, and never high: the sum of two weights never exceeds 1 by more than
+    /// the truncation of the denominator, 2^-15 of them, which the format's floor takes off again.
+    #[inline]
+    fn fraction(numerator: i64, denominator: i64) -> <Grid14 as Space>::Fraction {
+        let bits = i64::BITS - denominator.leading_zeros();
+        let scaled = |value: i64| if bits > 16 { value >> (bits - 16) } else { value << (16 - bits) };
+        let r = reciprocal(scaled(denominator) as u32);
+        // numerator <= denominator < 2^16 and mantissa < 2^16; mantissa / 2^31 is 1 / denominator; to Q14.
+        let fraction = ((scaled(numerator) as u32 * r.mantissa) >> 17).min(1 << 14);
+        <Grid14 as Space>::Fraction::from_bits(fraction as i16)
+    }
+
+    /// t to Q16 by one correction of the approximate depth: with t0 in Q16, the remainder (tn << 16) - t0 det is at most
+    /// SLACK * 2^3 = 2^6 determinants, and its quotient by the 16-bit reciprocal is within 2^-7 of true before the floor. So t
+    /// is low by less than 2^-16 (1 + 2^-7), and |D t| < 2^13 * 2^19 / 2 fits (|D_i| t is at most 2^15 grid units).
+    #[inline]
+    fn point(origin: Triple<i32>, direction: Triple<i32>, numerator: i64, denominator: i64) -> Triple<i32> {
+        let t0_q16 = Self::depth(numerator, denominator) << 3;
+        // tn < 2^45, so tn << 16 fits; t0 det < 2^19 * 2^44 = 2^63 bounds the same value within 2^6 det.
+        let remainder = (numerator << 16) - i64::from(t0_q16) * denominator;
+        let bits = i64::BITS - denominator.leading_zeros();
+        let r = reciprocal(if bits > 16 { denominator >> (bits - 16) } else { denominator << (16 - bits) } as u32);
+        // |remainder| < 2^6 det: scaled to a denominator of 16 bits and 8 bits less, below 2^14.
+        let scaled = if bits > 8 { remainder >> (bits - 8) } else { remainder << (8 - bits) } as i32;
+        // mantissa / 2^31 is 1 / the 16-bit denominator.
+        let t_q16 = t0_q16 + ((scaled * r.mantissa as i32) >> 23);
+        let moved = |origin: i32, direction: i32| {
+            (origin << POINT_BITS) + round_shift(direction * t_q16, 16 - POINT_BITS)
+        };
+        [moved(origin[0], direction[0]), moved(origin[1], direction[1]), moved(origin[2], direction[2])]
+    }
+
+    #[inline]
+    fn normalise(vector: Triple<i32>) -> Option<<Grid14 as Space>::Unit> {
+        normalise(vector)
+    }
+
+    #[inline]
+    fn stand_off(surface: &Surface<Grid14>) -> Triple<i32> {
+        let placed = |point_q4: i32, unit_q14: i32| {
+            // One rounding: the sum in Q14, the point being below 2^16 grid units.
+            round_shift((point_q4 << (14 - POINT_BITS)) + STAND_OFF * unit_q14, 14)
+        };
+        let n = surface.normal.map(|c| i32::from(c.to_bits()));
+        [placed(surface.point[0], n[0]), placed(surface.point[1], n[1]), placed(surface.point[2], n[2])]
+    }
+
+    #[inline]
+    fn direction(unit: <Grid14 as Space>::Unit) -> Triple<i32> {
+        unit.map(|c| i32::from(c.to_bits()))
+    }
+
+    /// The shift in the low 4 bits, the material above.
+    fn join_meta(shift: u32, material: u32) -> Option<i16> {
+        (shift <= Self::GRID_BITS && material <= Self::MATERIALS_MAX).then_some((material << 4 | shift) as u16 as i16)
+    }
+
+    #[inline(always)]
+    fn split_meta(meta: i16) -> (u32, u32) {
+        // 15 is no shift, but 15 = NORMAL_BITS harms nothing.
+        (u32::from(meta as u16 & 15), u32::from(meta as u16 >> 4))
+    }
+}

@@ -1,0 +1,137 @@
+//! Kernels: a space with its records, its box test and its triangle test.
+//!
+//! Traversal, tracing and shading are written once against [`Kernel`]. A kernel states how wide its numbers are;
+//! what the others may rely on is here: a box test that never loses a hit, and an order of hits that does not
+//! depend on the order in which they are found.
+
+use core::cmp::Ordering;
+use core::fmt::Debug;
+
+use crate::camera::Camera;
+use crate::num::{Triple, Word};
+use crate::record::Record;
+use crate::space::Space;
+
+/// The corners of a triangle in grid units.
+pub type Vertices = [Triple<i32>; 3];
+
+/// An axis-aligned box in grid units, both corners inclusive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bounds {
+    /// The least coordinates.
+    pub low: Triple<i32>,
+    /// The greatest coordinates.
+    pub high: Triple<i32>,
+}
+
+impl Bounds {
+    /// Whether `other` lies within.
+    #[must_use]
+    pub fn contains(&self, other: &Self) -> bool {
+        let not_below = self.low.iter().zip(&other.low).all(|(a, b)| a <= b);
+        not_below && self.high.iter().zip(&other.high).all(|(a, b)| a >= b)
+    }
+
+    /// The box of three corners.
+    #[must_use]
+    pub fn of(vertices: &Vertices) -> Self {
+        let [a, b, c] = *vertices;
+        let fold = |pick: fn(i32, i32) -> i32| {
+            [pick(pick(a[0], b[0]), c[0]), pick(pick(a[1], b[1]), c[1]), pick(pick(a[2], b[2]), c[2])]
+        };
+        Self { low: fold(i32::min), high: fold(i32::max) }
+    }
+}
+
+/// No primitive: the value of `skip` for a ray that starts on none, and of an id where nothing was hit.
+pub const NONE: u32 = u32::MAX;
+
+/// What a hit is made of, for shading.
+#[derive(Clone, Copy, Debug)]
+pub struct Surface<S: Space> {
+    /// The hit point.
+    pub point: S::Point,
+    /// The geometric normal, on the side that the ray came from.
+    pub normal: S::Unit,
+    /// The weight of the second vertex.
+    pub u: S::Fraction,
+    /// The weight of the third vertex.
+    pub v: S::Fraction,
+}
+
+/// A way to intersect rays with boxes and triangles, and the records for it.
+pub trait Kernel: Copy + Debug + Default + Send + Sync + 'static {
+    /// Its number in a blob.
+    const ID: u16;
+    /// Its name on the command line.
+    const NAME: &'static str;
+    /// Vertices lie in `[MARGIN, 2^GRID_BITS - MARGIN)`.
+    const GRID_BITS: u32;
+    /// See `GRID_BITS`.
+    const MARGIN: i32;
+    /// Where origins of rays (cameras, point lights) may lie.
+    const ORIGINS: core::ops::Range<i32>;
+    /// The largest magnitude of a direction's component, as a power of two.
+    const DIRECTION_BITS: u32;
+    /// The largest material index that a triangle's record holds.
+    const MATERIALS_MAX: u32;
+
+    /// What it shades in.
+    type Space: Space;
+    /// The word of camera coefficients.
+    type Word: Word;
+    /// Two child boxes and what they hold.
+    type Node: Record;
+    /// A triangle.
+    type Triangle: Record;
+    /// A ray, prepared.
+    type Ray: Copy + Debug;
+    /// A lower bound of the distance at which a ray enters a box.
+    type Distance: Copy + Debug + PartialOrd + Send;
+    /// Where a ray hits a triangle, exactly (as exactly as the kernel knows).
+    type Depth: Copy + Debug;
+
+    /// The record of a node, from the boxes of its children and their packed references.
+    fn node(boxes: [Bounds; 2], children: [u32; 2]) -> Self::Node;
+    /// The packed references of a node's children.
+    fn children(node: &Self::Node) -> [u32; 2];
+    /// The boxes of a node's children.
+    fn boxes(node: &Self::Node) -> [Bounds; 2];
+    /// The record of a triangle with vertices on the grid; `None` where it has no area or the material is too high.
+    fn triangle(vertices: &Vertices, material: u32) -> Option<Self::Triangle>;
+    /// The corners of a triangle; of a record that [`Kernel::triangle`] did not make, whatever it says.
+    fn vertices(triangle: &Self::Triangle) -> Vertices;
+    /// The material of a triangle.
+    fn material(triangle: &Self::Triangle) -> u32;
+
+    /// The ray through a pixel; `None` where the direction is zero.
+    fn primary(camera: &Camera<Self::Word>, x: u16, y: u16) -> Option<Self::Ray>;
+    /// The ray from an origin on or near the grid in a direction; `None` where that is zero.
+    fn ray(origin: Triple<Self::Word>, direction: Triple<Self::Word>, skip: u32) -> Option<Self::Ray>;
+    /// The open segment from a surface (moved off it, on the normal's side) to a grid point.
+    fn segment(from: &Surface<Self::Space>, to: Triple<i32>, skip: u32) -> Option<Self::Ray>;
+    /// The ray from a surface (moved off it, on the normal's side) in a direction.
+    fn leaving(
+        from: &Surface<Self::Space>,
+        direction: <Self::Space as Space>::Unit,
+        skip: u32,
+    ) -> Option<Self::Ray>;
+
+    /// The primitive that a ray starts on, or [`NONE`].
+    fn skip(ray: &Self::Ray) -> u32;
+    /// The distance beyond which nothing counts.
+    fn reach(ray: &Self::Ray) -> Self::Distance;
+    /// Where a ray enters each child of a node, if it does before `limit`. Conservative: a child that holds a
+    /// triangle whose hit is not beyond `limit` is never left out.
+    fn enter(ray: &Self::Ray, node: &Self::Node, limit: Self::Distance) -> [Option<Self::Distance>; 2];
+    /// Where a ray hits a triangle, if it does within its reach. Edges belong to both neighbours.
+    fn intersect(ray: &Self::Ray, triangle: &Self::Triangle) -> Option<Self::Depth>;
+    /// A limit for [`Kernel::enter`] that leaves out nothing at or before `depth`.
+    fn limit(depth: &Self::Depth) -> Self::Distance;
+    /// The order of two hits of one ray.
+    fn order(a: &Self::Depth, b: &Self::Depth) -> Ordering;
+    /// Whether a box that is entered at `entry` may hold something not beyond `limit`.
+    fn within(entry: Self::Distance, limit: Self::Distance) -> bool;
+    /// The point, the normal and the barycentrics of a hit. The triangle must be hit by the ray.
+    fn resolve(ray: &Self::Ray, triangle: &Self::Triangle) -> Surface<Self::Space>;
+}

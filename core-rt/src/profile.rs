@@ -1,0 +1,133 @@
+//! Profiles: what is compiled in.
+//!
+//! A profile is a type, and what it has is a constant: branches on it fold, and the linker drops what is left behind
+//! them. The host uses [`Full`]; a firmware's is derived from the blob that it is built for.
+
+use core::fmt::{Debug, Display, Formatter};
+use core::marker::PhantomData;
+
+use serde::{Deserialize, Serialize};
+
+use crate::kernel::Kernel;
+
+/// One thing that a scene may need.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Need {
+    /// Point lights.
+    PointLight = 1,
+    /// Directional lights.
+    DirectionalLight = 1 << 1,
+    /// Shadow rays.
+    Shadows = 1 << 2,
+    /// Normals at vertices.
+    SmoothNormals = 1 << 3,
+    /// Surfaces that add light of their own.
+    Emission = 1 << 4,
+    /// Light that reaches everything.
+    Ambient = 1 << 5,
+    /// The sRGB transfer function.
+    Srgb = 1 << 6,
+    /// Pixels in proportion to light.
+    Linear = 1 << 7,
+    /// More than 2^16 triangles in the file.
+    WideIds = 1 << 8,
+    /// More than 2^16 - 1 normals.
+    WideNormals = 1 << 9,
+}
+
+impl Need {
+    /// All of them.
+    pub const ALL: [Self; 10] = [
+        Self::PointLight,
+        Self::DirectionalLight,
+        Self::Shadows,
+        Self::SmoothNormals,
+        Self::Emission,
+        Self::Ambient,
+        Self::Srgb,
+        Self::Linear,
+        Self::WideIds,
+        Self::WideNormals,
+    ];
+}
+
+impl Display for Need {
+    fn fmt(&self, f: &mut Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::PointLight => "point lights",
+            Self::DirectionalLight => "directional lights",
+            Self::Shadows => "shadows",
+            Self::SmoothNormals => "smooth normals",
+            Self::Emission => "emission",
+            Self::Ambient => "ambient light",
+            Self::Srgb => "sRGB output",
+            Self::Linear => "linear output",
+            Self::WideIds => "wide triangle ids",
+            Self::WideNormals => "wide normal indices",
+        })
+    }
+}
+
+/// A set of needs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Needs(u32);
+
+impl Needs {
+    /// None.
+    pub const NONE: Self = Self(0);
+    /// All.
+    pub const ALL: Self = Self((1 << Need::ALL.len()) - 1);
+
+    /// From the bits of a header.
+    #[must_use]
+    pub const fn from_bits(bits: u32) -> Self {
+        Self(bits)
+    }
+
+    /// As a header has them.
+    #[must_use]
+    pub const fn bits(self) -> u32 {
+        self.0
+    }
+
+    /// Whether a need is in the set.
+    #[must_use]
+    pub const fn has(self, need: Need) -> bool {
+        self.0 & need as u32 != 0
+    }
+
+    /// The set with a need added, if `wanted`.
+    #[must_use]
+    pub const fn with(self, need: Need, wanted: bool) -> Self {
+        if wanted { Self(self.0 | need as u32) } else { self }
+    }
+
+    /// The first need that `self` has and `other` lacks.
+    #[must_use]
+    pub fn first_missing_in(self, other: Self) -> Option<Need> {
+        Need::ALL.into_iter().find(|&need| self.has(need) && !other.has(need))
+    }
+
+    /// The needs of the set.
+    pub fn iter(self) -> impl Iterator<Item = Need> {
+        Need::ALL.into_iter().filter(move |&need| self.has(need))
+    }
+}
+
+/// What is compiled in.
+pub trait Profile: Copy + Debug + Default + Send + Sync + 'static {
+    /// The arithmetic.
+    type Kernel: Kernel;
+    /// Everything that a scene under this profile may need.
+    const NEEDS: Needs;
+}
+
+/// Everything.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Full<K>(PhantomData<K>);
+
+impl<K: Kernel> Profile for Full<K> {
+    type Kernel = K;
+    const NEEDS: Needs = Needs::ALL;
+}

@@ -1,0 +1,179 @@
+//! Pictures, tile by tile, into whatever takes pixels.
+//!
+//! All storage is the caller's ([`Workspace`]); a picture is never held whole. Tiles do not know of each other, so any
+//! tile size, order and number of threads gives the same picture.
+
+use crate::bvh::{Intersect, Stack};
+use crate::colour::{Colour, Rgb888};
+use crate::kernel::Kernel;
+use crate::profile::{Need, Profile};
+use crate::scene::Scene;
+use crate::shade::radiance;
+use crate::stats::{RayKind, Stats};
+
+/// A rectangle of a picture, pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tile {
+    /// The left column.
+    pub x: u16,
+    /// The top row.
+    pub y: u16,
+    /// Columns, at least one.
+    pub width: u16,
+    /// Rows, at least one.
+    pub height: u16,
+}
+
+impl Tile {
+    /// The number of pixels.
+    #[must_use]
+    pub fn pixels(&self) -> usize {
+        usize::from(self.width) * usize::from(self.height)
+    }
+
+    /// The tiles of a picture, row by row; those at the right and at the bottom are cut to fit. None where a size is 0.
+    pub fn of(picture: [u16; 2], tile: [u16; 2]) -> impl Iterator<Item = Self> {
+        let starts = |end: u16, step: u16| {
+            let step = usize::from(step.max(1));
+            (0..end).step_by(step)
+        };
+        let cut = |start: u16, end: u16, step: u16| step.max(1).min(end - start);
+        let [width, height] = picture;
+        starts(height, tile[1]).flat_map(move |y| {
+            starts(width, tile[0]).map(move |x| Self {
+                x,
+                y,
+                width: cut(x, width, tile[0]),
+                height: cut(y, height, tile[1]),
+            })
+        })
+    }
+}
+
+/// What takes a picture: a file, a display, a wire.
+pub trait Sink {
+    /// What can go wrong; [`core::convert::Infallible`] where nothing can.
+    type Error;
+
+    /// Takes a tile's pixels, row by row.
+    ///
+    /// # Errors
+    /// Whatever the sink cannot do; rendering stops there.
+    fn tile(&mut self, tile: Tile, pixels: &[Rgb888]) -> Result<(), Self::Error>;
+}
+
+/// The storage that rendering needs.
+#[derive(Debug)]
+pub struct Workspace<'a, K: Kernel> {
+    /// At least as deep as the scene's tree.
+    pub stack: &'a mut Stack<K>,
+    /// At least one entry a pixel of the largest tile.
+    pub hits: &'a mut [u32],
+    /// At least one entry a pixel of the largest tile.
+    pub pixels: &'a mut [Rgb888],
+}
+
+/// Why a picture was not finished.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RenderError<E> {
+    /// The stack is shallower than the scene's tree.
+    Stack {
+        /// Its capacity.
+        capacity: usize,
+        /// The levels of the tree.
+        needed: usize,
+    },
+    /// The buffers hold fewer pixels than a tile.
+    Tile {
+        /// How many they hold.
+        capacity: usize,
+        /// How many a tile has.
+        needed: usize,
+    },
+    /// The sink's own.
+    Sink(E),
+}
+
+impl<E: core::fmt::Display> core::fmt::Display for RenderError<E> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Stack { capacity, needed } => {
+                write!(f, "the traversal stack holds {capacity} entries, and this scene needs {needed}")
+            }
+            Self::Tile { capacity, needed } => {
+                write!(f, "the tile buffers hold {capacity} pixels, and the tile has {needed}")
+            }
+            Self::Sink(error) => error.fmt(f),
+        }
+    }
+}
+
+/// Renders one tile into the workspace and returns its pixels, row by row. The tile must lie in the picture.
+///
+/// # Errors
+/// Where the workspace is too small.
+pub fn render_tile<'w, P: Profile>(
+    scene: &Scene<'_, P>,
+    tile: Tile,
+    workspace: &'w mut Workspace<'_, P::Kernel>,
+    stats: &mut impl Stats,
+) -> Result<&'w [Rgb888], RenderError<core::convert::Infallible>> {
+    let needed = usize::from(scene.header.depth);
+    let stack = &mut *workspace.stack;
+    if stack.capacity() < needed {
+        return Err(RenderError::Stack { capacity: stack.capacity(), needed });
+    }
+    let count = tile.pixels();
+    let capacity = workspace.hits.len().min(workspace.pixels.len());
+    let (Some(hits), Some(pixels)) = (workspace.hits.get_mut(..count), workspace.pixels.get_mut(..count)) else {
+        return Err(RenderError::Tile { capacity, needed: count });
+    };
+    scene.bvh.closest_tile(tile_rays(scene, tile), hits, stack, stats);
+    // The profile says which transfers there are; with one, there is no choice left at run time.
+    let transfer = match (P::NEEDS.has(Need::Srgb), P::NEEDS.has(Need::Linear)) {
+        (true, false) => crate::colour::Transfer::Srgb,
+        (false, true) => crate::colour::Transfer::Linear,
+        _ => scene.header.transfer,
+    };
+    for ((pixel, &hit), ray) in pixels.iter_mut().zip(&*hits).zip(tile_rays(scene, tile)) {
+        stats.ray(RayKind::Primary);
+        let seen = match ray {
+            Some(ray) => radiance(scene, &ray, hit, stack, stats),
+            None => Colour::constant(&scene.header.background),
+        };
+        *pixel = seen.encode(transfer);
+    }
+    Ok(pixels)
+}
+
+/// The camera rays of a tile, row by row.
+fn tile_rays<P: Profile>(
+    scene: &Scene<'_, P>,
+    tile: Tile,
+) -> impl Iterator<Item = Option<<P::Kernel as Kernel>::Ray>> {
+    let rows = tile.y..tile.y.saturating_add(tile.height);
+    let columns = tile.x..tile.x.saturating_add(tile.width);
+    rows.flat_map(move |y| columns.clone().map(move |x| P::Kernel::primary(&scene.camera, x, y)))
+}
+
+/// Renders a picture, tile by tile.
+///
+/// # Errors
+/// Where the workspace is too small, or the sink fails.
+pub fn render<P: Profile, S: Sink>(
+    scene: &Scene<'_, P>,
+    tile: [u16; 2],
+    workspace: &mut Workspace<'_, P::Kernel>,
+    sink: &mut S,
+    stats: &mut impl Stats,
+) -> Result<(), RenderError<S::Error>> {
+    for tile in Tile::of(scene.header.size, tile) {
+        let pixels = render_tile(scene, tile, workspace, stats).map_err(|error| match error {
+            RenderError::Stack { capacity, needed } => RenderError::Stack { capacity, needed },
+            RenderError::Tile { capacity, needed } => RenderError::Tile { capacity, needed },
+            RenderError::Sink(never) => match never {},
+        })?;
+        sink.tile(tile, pixels).map_err(RenderError::Sink)?;
+    }
+    Ok(())
+}

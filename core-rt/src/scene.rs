@@ -1,0 +1,114 @@
+//! A scene: a view of a blob, checked once and read in place.
+
+use crate::blob::{BlobError, Header, check, open};
+use crate::bvh::Bvh;
+use crate::camera::Camera;
+use crate::kernel::Kernel;
+use crate::profile::{Need, Profile};
+use crate::record::{Light, Material};
+use crate::section::{Integers, Reader};
+use crate::space::Space;
+
+/// No tree is deeper; the host's builder keeps to it.
+pub const MAX_DEPTH: usize = 64;
+
+/// What shading reads.
+#[derive(Clone, Copy, Debug)]
+pub struct Shading<'a, K: Kernel> {
+    /// Three normals a triangle, in the order of the triangles; empty for a flat scene.
+    pub normal_indices: Integers<'a>,
+    /// Unit normals.
+    pub normals: &'a [<K::Space as Space>::Normal],
+    /// Materials.
+    pub materials: &'a [Material],
+    /// Lights.
+    pub lights: &'a [Light],
+}
+
+impl<K: Kernel> Shading<'_, K> {
+    /// Whether a triangle in a smooth scene is flat: its indices are the largest of their width.
+    #[inline]
+    #[must_use]
+    pub fn is_flat(&self, index: u32) -> bool {
+        let flat = match self.normal_indices {
+            Integers::Narrow(_) => u16::MAX.into(),
+            Integers::Wide(_) => u32::MAX,
+        };
+        self.normal_indices.triple(index) == [flat; 3]
+    }
+
+    /// The normals of a triangle's vertices; `None` for a flat one.
+    #[inline]
+    #[must_use]
+    pub fn normals(&self, index: u32) -> Option<[<K::Space as Space>::Unit; 3]> {
+        let [a, b, c] = self.normal_indices.triple(index);
+        let unit = |i: u32| self.normals.get(i as usize).map(K::Space::unit);
+        Some([unit(a)?, unit(b)?, unit(c)?])
+    }
+}
+
+/// A checked scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Scene<'a, P: Profile> {
+    /// What its header says.
+    pub header: Header,
+    /// The view.
+    pub camera: Camera<<P::Kernel as Kernel>::Word>,
+    /// Geometry.
+    pub bvh: Bvh<'a, P::Kernel>,
+    /// Everything else.
+    pub shading: Shading<'a, P::Kernel>,
+}
+
+impl<'a, P: Profile> Scene<'a, P> {
+    /// Checks a blob, once and completely, and views it in place. `bytes` must be 8-aligned.
+    ///
+    /// # Errors
+    /// Whatever is wrong with it; see [`BlobError`].
+    pub fn new_checked(bytes: &'a [u8]) -> Result<Self, BlobError> {
+        let (header, sections) = open(bytes, P::Kernel::ID)?;
+        if let Some(need) = header.needs.first_missing_in(P::NEEDS) {
+            return Err(BlobError::Missing(need));
+        }
+        let camera = camera::<P::Kernel>(&header).ok_or(BlobError::Header)?;
+        let (bvh, shading) = view(&header, sections).ok_or(BlobError::Sections)?;
+        check(&header, &bvh, &shading)?;
+        Ok(Self { header, camera, bvh, shading })
+    }
+}
+
+/// The camera, where the kernel can hold it and the picture has pixels.
+fn camera<K: Kernel>(header: &Header) -> Option<Camera<K::Word>> {
+    let eye_in_range = header.camera.eye.iter().all(|c| K::ORIGINS.contains(c));
+    let has_pixels = header.size.iter().all(|&s| s > 0);
+    if !(eye_in_range && has_pixels) {
+        return None;
+    }
+    Camera::new(&header.camera, header.size, K::DIRECTION_BITS)
+}
+
+/// The sections, if they fill the body exactly and agree with each other.
+fn view<'a, K: Kernel>(header: &Header, sections: &'a [u8]) -> Option<(Bvh<'a, K>, Shading<'a, K>)> {
+    let counts = &header.counts;
+    let smooth = header.needs.has(Need::SmoothNormals);
+    let consistent = counts.triangles > 0
+        && counts.smooth == if smooth { counts.triangles } else { 0 }
+        && smooth == (counts.normals > 0);
+    if !consistent {
+        return None;
+    }
+    let mut reader = Reader { bytes: sections };
+    let bvh = Bvh {
+        root: header.root,
+        nodes: reader.records(counts.nodes)?,
+        triangles: reader.records(counts.triangles)?,
+        ids: reader.integers(counts.triangles, header.needs.has(Need::WideIds))?,
+    };
+    let shading = Shading {
+        normal_indices: reader.integers(counts.smooth.checked_mul(3)?, header.needs.has(Need::WideNormals))?,
+        normals: reader.records(counts.normals)?,
+        materials: reader.records(counts.materials)?,
+        lights: reader.records(counts.lights)?,
+    };
+    reader.bytes.is_empty().then_some((bvh, shading))
+}

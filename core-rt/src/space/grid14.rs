@@ -1,0 +1,113 @@
+//! Shading beside a 14-bit grid, in 32 bits: unit vectors and barycentrics in Q14, points in Q4.
+//!
+//! Nothing here multiplies or divides in 64 bits, so that a Cortex-M0 shades at the price of `muls`.
+
+use fixed::types::{I2F14, U16F16};
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
+
+use super::{Space, is_unit_q30};
+use crate::colour::Rgb16;
+use crate::num::{Triple, bits, dot, inverse_sqrt_u32, round_shift, sub};
+
+/// The space of 14-bit grids.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Grid14;
+
+/// Fractional bits of a point: the grid is subdivided by 16.
+pub const POINT_BITS: u32 = 4;
+
+/// A unit vector in Q14 in three half-words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
+#[repr(C)]
+pub struct Normal14(pub [i16; 3]);
+
+/// `v` with length 1, each component within 2^-12.5 of true; `None` for zero. Any `v` that does not hold -2^31.
+///
+/// `v` is scaled to 15 bits (rounded where it has more), so that its squares sum to less than 2^32. That sum, shifted
+/// left by an even number of bits, is in the range of [`inverse_sqrt_u32`], whose error is 2^-13; the rounding of v is
+/// 2^-15 a component. (v <= 2^15) * (y <= 2^15) fits.
+#[inline]
+pub fn normalise(v: Triple<i32>) -> Option<Triple<I2F14>> {
+    let bits = bits(v);
+    if bits == 0 {
+        return None;
+    }
+    let v = if bits > 15 { v.map(|c| round_shift(c >> 1, bits - 16)) } else { v.map(|c| c << (15 - bits)) };
+    let square: u32 = v.iter().map(|&c| (c * c) as u32).sum();
+    let half_shift = square.leading_zeros() / 2; // 0 or 1: the square is at least 2^28
+    let y_q15 = (inverse_sqrt_u32(square << (2 * half_shift)) >> 1) as i32;
+    // v / sqrt(square) = v y 2^half_shift / 2^30; to Q14.
+    Some(v.map(|c| I2F14::from_bits(round_shift(c * y_q15, 16 - half_shift) as i16)))
+}
+
+impl Space for Grid14 {
+    type Point = Triple<i32>;
+    type Unit = Triple<I2F14>;
+    type Fraction = I2F14;
+    type Colour = Rgb16;
+    type Normal = Normal14;
+
+    #[inline]
+    fn unit(normal: &Normal14) -> Self::Unit {
+        normal.0.map(I2F14::from_bits)
+    }
+
+    fn is_unit(normal: &Normal14) -> bool {
+        is_unit_q30(normal.0.map(|c| i32::from(c) << 16))
+    }
+
+    fn normal(unit_q30: Triple<i32>) -> Normal14 {
+        Normal14(Self::unit_from_q30(unit_q30).map(I2F14::to_bits))
+    }
+
+    #[inline]
+    fn unit_from_q30(unit_q30: Triple<i32>) -> Self::Unit {
+        // |c| <= 2^30, so the sum with the rounding half fits.
+        unit_q30.map(|c| I2F14::from_bits(round_shift(c, 16) as i16))
+    }
+
+    #[inline]
+    fn point(grid: Triple<i32>) -> Self::Point {
+        grid.map(|c| c << POINT_BITS)
+    }
+
+    #[inline]
+    fn towards(from: Self::Point, to: Self::Point) -> Option<Self::Unit> {
+        normalise(sub(to, from)) // both below 2^20
+    }
+
+    /// Weights sum to 1 in Q14 and units are at most 1 in Q14: each sum is at most 2^28.
+    #[inline]
+    fn interpolate(normals: [Self::Unit; 3], u: I2F14, v: I2F14) -> Option<Self::Unit> {
+        let (u, v) = (i32::from(u.to_bits()), i32::from(v.to_bits()));
+        let w = (1 << 14) - u - v;
+        let [n0, n1, n2] = normals.map(|n| n.map(|c| i32::from(c.to_bits())));
+        normalise([
+            w * n0[0] + u * n1[0] + v * n2[0],
+            w * n0[1] + u * n1[1] + v * n2[1],
+            w * n0[2] + u * n1[2] + v * n2[2],
+        ])
+    }
+
+    #[inline]
+    fn negate(unit: Self::Unit) -> Self::Unit {
+        unit.map(|c| -c) // a unit vector's components are in [-1, 1], and Q14 goes to -2
+    }
+
+    #[inline]
+    fn aligned(a: Self::Unit, b: Self::Unit) -> bool {
+        dot_q28(a, b) >= 0
+    }
+
+    #[inline]
+    fn cosine(a: Self::Unit, b: Self::Unit) -> Option<U16F16> {
+        let cosine_q28 = dot_q28(a, b);
+        (cosine_q28 > 0).then(|| U16F16::from_bits((round_shift(cosine_q28, 12) as u32).min(1 << 16)))
+    }
+}
+
+/// At most 3 * 2^28, in practice little over 2^28.
+#[inline]
+fn dot_q28(a: Triple<I2F14>, b: Triple<I2F14>) -> i32 {
+    dot(a.map(|c| i32::from(c.to_bits())), b.map(|c| i32::from(c.to_bits())))
+}

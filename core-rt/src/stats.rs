@@ -1,0 +1,83 @@
+//! Counting the work: boxes and triangles tested, rays by kind. A renderer that does not count pays nothing.
+
+/// The kinds of ray.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RayKind {
+    /// From the camera.
+    Primary,
+    /// From a surface to a light.
+    Shadow,
+}
+
+/// What is told of the work as it is done.
+pub trait Stats {
+    /// So many box tests.
+    #[inline(always)]
+    fn boxes(&mut self, count: u32) {
+        let _ = count;
+    }
+    /// A triangle test.
+    #[inline(always)]
+    fn triangle(&mut self) {}
+    /// A ray.
+    #[inline(always)]
+    fn ray(&mut self, kind: RayKind) {
+        let _ = kind;
+    }
+}
+
+/// Counts nothing.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoStats;
+
+impl Stats for NoStats {}
+
+/// Counts everything.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Ray-box tests.
+    pub box_tests: u64,
+    /// Ray-triangle tests.
+    pub triangle_tests: u64,
+    /// Camera rays.
+    pub primary_rays: u64,
+    /// Shadow rays.
+    pub shadow_rays: u64,
+}
+
+impl Counts {
+    /// The sum of two counts.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            box_tests: self.box_tests + other.box_tests,
+            triangle_tests: self.triangle_tests + other.triangle_tests,
+            primary_rays: self.primary_rays + other.primary_rays,
+            shadow_rays: self.shadow_rays + other.shadow_rays,
+        }
+    }
+
+    /// All rays.
+    #[must_use]
+    pub fn rays(&self) -> u64 {
+        self.primary_rays + self.shadow_rays
+    }
+}
+
+impl Stats for Counts {
+    #[inline(always)]
+    fn boxes(&mut self, count: u32) {
+        self.box_tests += u64::from(count);
+    }
+    #[inline(always)]
+    fn triangle(&mut self) {
+        self.triangle_tests += 1;
+    }
+    #[inline(always)]
+    fn ray(&mut self, kind: RayKind) {
+        match kind {
+            RayKind::Primary => self.primary_rays += 1,
+            RayKind::Shadow => self.shadow_rays += 1,
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! The importer: OBJ, MTL and `scene.toml` to a [`Model`].
+//!
+//! | file | what it does |
+//! | --- | --- |
+//! | `source` | where files come from |
+//! | `lines` | text to statements, and the checked stream that `tobj` reads |
+//! | `scan`, `obj` | the check of an OBJ; its geometry |
+//! | `mtl` | colours |
+//! | `schema` | the keys of a `scene.toml` |
+//! | `document` | its text, so that an error has a line; checks of single values |
+//! | `camera`, `setting`, `materials` | what its tables mean, with the defaults |
+//! | `error` | errors and warnings |
+//!
+//! What cannot be drawn as meant is an error; what is drawn in a simpler way is a [`Warning`].
+//! Whatever the bytes, nothing panics: the fuzz targets `obj` and `scene_toml` hold it to that.
+
+mod camera;
+mod document;
+mod error;
+mod lines;
+mod materials;
+mod mtl;
+mod obj;
+mod scan;
+mod schema;
+mod setting;
+mod source;
+#[cfg(test)]
+mod testing;
+
+use std::io;
+use std::path::Path;
+
+use camera::Bounds;
+use document::Document;
+
+pub use error::{ImportError, Warning};
+pub use source::{Embedded, Folder, Source};
+
+use crate::model::Model;
+
+/// The greatest coordinate, scene units: products of a good many still fit an f64.
+pub const LARGEST: f64 = 1e30;
+/// The least extent of a scene, and the least length of a direction.
+pub const SMALLEST: f64 = 1e-30;
+
+/// A scene, and what its author should know of how it will be drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Imported {
+    /// The scene. Indices are in range, positions finite, normals of unit length, and every
+    /// position and normal is used by a triangle.
+    pub model: Model,
+    /// In the order in which they were found.
+    pub warnings: Vec<Warning>,
+}
+
+/// Imports a `scene.toml` or a bare `.obj`, by the extension of its name.
+///
+/// # Errors
+/// Everything that [`ImportError`] lists.
+pub fn load(path: &Path) -> Result<Imported, ImportError> {
+    let file = error::printable(&path.to_string_lossy());
+    if path.is_dir() {
+        return Err(ImportError::unreadable(
+            &file,
+            io::ErrorKind::IsADirectory.into(),
+        ));
+    }
+    let Some(name) = path.file_name().and_then(|name| name.to_str()) else {
+        let message = "the name is not UTF-8; rename the file";
+        let error = io::Error::new(io::ErrorKind::InvalidInput, message);
+        return Err(ImportError::unreadable(&file, error));
+    };
+    let folder = path.parent().unwrap_or(Path::new(""));
+    load_from(&Folder(folder.into()), name)
+}
+
+/// Imports the scene `name` of a [`Source`].
+///
+/// # Errors
+/// Everything that [`ImportError`] lists.
+pub fn load_from(source: &dyn Source, name: &str) -> Result<Imported, ImportError> {
+    let file = source.describe(name);
+    match extension(name).as_str() {
+        "obj" => assemble(source, name, &Document::absent(file)),
+        "toml" => {
+            let contents = source
+                .read(name)
+                .map_err(|error| ImportError::unreadable(&file, error))?;
+            let document = Document::parse(file, contents)?;
+            let obj = document.model(source, name)?;
+            assemble(source, &obj, &document)
+        }
+        _ => Err(ImportError::Extension { file }),
+    }
+}
+
+/// The model of an OBJ under the settings of a scene file.
+fn assemble(source: &dyn Source, obj: &str, document: &Document) -> Result<Imported, ImportError> {
+    let mut warnings = Vec::new();
+    let mesh = obj::read(source, obj, &mut warnings)?;
+    let bounds = Bounds::of(&mesh.positions);
+    if bounds.diagonal() < SMALLEST {
+        let [x, y, z] = bounds.low.to_array();
+        return Err(ImportError::NoExtent {
+            file: source.describe(obj),
+            x,
+            y,
+            z,
+        });
+    }
+    let materials = document.materials(source, obj, &mesh, &mut warnings)?;
+    let camera = document.camera(bounds)?;
+    let model = Model {
+        positions: mesh.positions,
+        normals: mesh.normals,
+        triangles: mesh.triangles,
+        materials,
+        lights: document.lights(&camera)?,
+        camera,
+        background: document.background()?,
+        render: document.render(&mut warnings)?,
+    };
+    Ok(Imported { model, warnings })
+}
+
+/// The extension of a name, in lower case; empty where there is none.
+fn extension(name: &str) -> String {
+    let extension = Path::new(name).extension().unwrap_or_default();
+    extension.to_string_lossy().to_ascii_lowercase()
+}
+
+/// The name of a file that the file `name` calls `other`.
+fn beside(name: &str, other: &str) -> String {
+    Path::new(name)
+        .with_file_name(other)
+        .to_string_lossy()
+        .into_owned()
+}
