@@ -44,6 +44,15 @@ impl Integers<'_> {
         }
     }
 
+    /// How many bytes they take.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        match self {
+            Self::Narrow(values) => size_of_val(*values),
+            Self::Wide(values) => size_of_val(*values),
+        }
+    }
+
     /// Whether there are none.
     #[must_use]
     pub fn is_empty(&self) -> bool {

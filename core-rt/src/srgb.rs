@@ -27,6 +27,6 @@ const THRESHOLDS: [u16; 255] = [
 /// The byte for linear light `light_q16`, rounded to nearest; everything from 1.0 on is 255.
 #[inline]
 #[must_use]
-pub fn encode(light_q16: u32) -> u8 {
+pub(crate) fn encode(light_q16: u32) -> u8 {
     THRESHOLDS.partition_point(|&threshold| u32::from(threshold) <= light_q16) as u8
 }

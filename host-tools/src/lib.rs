@@ -2,9 +2,15 @@
 //! independent f64 reference.
 
 pub mod builtin;
+pub mod cli;
 pub mod compare;
+pub mod engine;
 pub mod files;
+pub mod grid;
 pub mod import;
 pub mod model;
 pub mod picture;
+pub mod prepare;
 pub mod reference;
+pub mod render;
+pub mod tree;

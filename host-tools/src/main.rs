@@ -1,1 +1,5 @@
-fn main() {}
+//! The `intray` command.
+
+fn main() -> std::process::ExitCode {
+    host_tools::cli::run()
+}

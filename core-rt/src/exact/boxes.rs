@@ -21,7 +21,7 @@ use crate::record::Record;
 type Plane<W> = <<W as Width>::Node as BoxNode>::Plane;
 
 /// Two child boxes: child, low or high (plus one), axis.
-pub type Planes<P> = [[[P; 3]; 2]; 2];
+pub(super) type Planes<P> = [[[P; 3]; 2]; 2];
 
 /// A node's record, for planes of one type.
 pub trait BoxNode: Record {
@@ -35,17 +35,25 @@ pub trait BoxNode: Record {
     fn children(&self) -> [u32; 2];
 }
 
-// zerocopy proves the absence of padding for concrete types only.
-macro_rules! box_node {
-    ($(#[$doc:meta])* $name:ident, $plane:ty) => {
-        $(#[$doc])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
-        #[repr(C)]
-        pub struct $name {
-            planes: Planes<$plane>,
-            children: [u32; 2],
-        }
+/// Two children on a 14-bit grid, in 32 bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
+#[repr(C)]
+pub struct BoxNode14 {
+    planes: Planes<u16>,
+    children: [u32; 2],
+}
 
+/// Two children on a 29-bit grid, in 56 bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
+#[repr(C)]
+pub struct BoxNode29 {
+    planes: Planes<u32>,
+    children: [u32; 2],
+}
+
+// Two types and not one generic one: zerocopy proves the absence of padding for concrete types only.
+macro_rules! box_node {
+    ($name:ident, $plane:ty) => {
         impl BoxNode for $name {
             type Plane = $plane;
             #[inline]
@@ -63,17 +71,8 @@ macro_rules! box_node {
         }
     };
 }
-
-box_node!(
-    /// Two children on a 14-bit grid, in 32 bytes.
-    BoxNode14,
-    u16
-);
-box_node!(
-    /// Two children on a 29-bit grid, in 56 bytes.
-    BoxNode29,
-    u32
-);
+box_node!(BoxNode14, u16);
+box_node!(BoxNode29, u32);
 
 /// The node's record. Corners must lie on the grid.
 pub(super) fn pack<N: BoxNode>(boxes: [Bounds; 2], children: [u32; 2]) -> N {

@@ -14,7 +14,7 @@ use crate::num::{Triple, bits, dot, inverse_sqrt_u32, round_shift, sub};
 pub struct Grid14;
 
 /// Fractional bits of a point: the grid is subdivided by 16.
-pub const POINT_BITS: u32 = 4;
+pub(crate) const POINT_BITS: u32 = 4;
 
 /// A unit vector in Q14 in three half-words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
@@ -27,7 +27,7 @@ pub struct Normal14(pub [i16; 3]);
 /// left by an even number of bits, is in the range of [`inverse_sqrt_u32`], whose error is 2^-13; the rounding of v is
 /// 2^-15 a component. (v <= 2^15) * (y <= 2^15) fits.
 #[inline]
-pub fn normalise(v: Triple<i32>) -> Option<Triple<I2F14>> {
+pub(crate) fn normalise(v: Triple<i32>) -> Option<Triple<I2F14>> {
     let bits = bits(v);
     if bits == 0 {
         return None;

@@ -12,7 +12,7 @@ use crate::num::{Triple, bits, dot, inverse_sqrt_u64, round_shift, sub};
 pub struct Grid29;
 
 /// Fractional bits of a point: the grid is subdivided by 256.
-pub const POINT_BITS: u32 = 8;
+pub(crate) const POINT_BITS: u32 = 8;
 
 /// A unit vector in Q30.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
@@ -24,7 +24,7 @@ pub struct Normal29(pub [i32; 3]);
 /// As in 14 bits: `v` scaled to 31 bits, its squares sum to less than 2^64, [`inverse_sqrt_u64`] has 2^-28.
 /// (v <= 2^31) * (y <= 2^31) fits.
 #[inline]
-pub fn normalise(v: Triple<i64>) -> Option<Triple<I2F30>> {
+pub(crate) fn normalise(v: Triple<i64>) -> Option<Triple<I2F30>> {
     let bits = bits(v);
     if bits == 0 {
         return None;

@@ -136,7 +136,6 @@ impl Document {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::import::testing::{refused, room, warnings};
 
     #[test]

@@ -1,0 +1,53 @@
+//! The command line: one module a verb.
+//!
+//! Results go to stdout, everything else to stderr. The exit status is 0, or 1 for a failed check, or 2 for bad input.
+
+mod compare;
+mod demo;
+mod failure;
+mod inspect;
+mod input;
+mod output;
+mod prep;
+mod progress;
+mod render;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use failure::Failure;
+
+/// Integer ray tracing for chips without an FPU, and on a PC, bit for bit the same.
+///
+/// Without a command, renders the built-in scene to out/demo.png and says how far it is from f64.
+#[derive(Debug, Parser)]
+#[command(name = "intray", version, propagate_version = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Prep(prep::Arguments),
+    Inspect(inspect::Arguments),
+    Render(render::Arguments),
+    Compare(compare::Arguments),
+}
+
+/// Runs the command that the process was called with.
+#[must_use]
+pub fn run() -> ExitCode {
+    let done: Result<(), Failure> = match Arguments::parse().command {
+        None => demo::run(),
+        Some(Command::Prep(arguments)) => prep::run(&arguments),
+        Some(Command::Inspect(arguments)) => inspect::run(&arguments),
+        Some(Command::Render(arguments)) => render::run(&arguments),
+        Some(Command::Compare(arguments)) => compare::run(&arguments),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}

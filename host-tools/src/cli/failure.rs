@@ -1,0 +1,30 @@
+//! How a command fails: one message, one exit status.
+
+use std::process::ExitCode;
+
+/// A message for a person, and the status that the process ends with.
+#[derive(Debug)]
+pub(super) struct Failure {
+    message: String,
+    status: u8,
+}
+
+impl Failure {
+    /// What was given is wrong: status 2.
+    pub(super) fn input(message: impl Into<String>) -> Self {
+        Self { message: message.into(), status: 2 }
+    }
+
+    /// Prints the message.
+    pub(super) fn report(&self) -> ExitCode {
+        eprintln!("error: {}", self.message);
+        ExitCode::from(self.status)
+    }
+}
+
+/// Errors of the library are about what was given.
+impl<E: std::error::Error> From<E> for Failure {
+    fn from(error: E) -> Self {
+        Self::input(error.to_string())
+    }
+}

@@ -1,0 +1,20 @@
+//! Standard output. A reader that stops reading (`| head`) is no error.
+
+use std::io::{ErrorKind, Write};
+
+use super::failure::Failure;
+
+/// Prints a line.
+pub(super) fn line(text: &str) -> Result<(), Failure> {
+    match writeln!(std::io::stdout().lock(), "{text}") {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Failure::input(format!("cannot write to standard output: {error}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Prints an object as JSON, in one line.
+pub(super) fn json(value: &impl serde::Serialize) -> Result<(), Failure> {
+    line(&serde_json::to_string(value)?)
+}

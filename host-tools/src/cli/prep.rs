@@ -1,0 +1,32 @@
+//! `intray prep`: a scene becomes a blob.
+
+use std::path::PathBuf;
+
+use super::failure::Failure;
+use super::input::SceneArguments;
+use super::output;
+use crate::files;
+
+/// Turn a scene into a blob for one kernel and one picture size
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+
+    /// Where the blob goes
+    #[arg(short, value_name = "BLOB")]
+    output: PathBuf,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let scene = arguments.scene.load()?;
+    files::write_atomically(&arguments.output, scene.blob.bytes())?;
+    let (header, _) = scene.engine.inspect(scene.blob.bytes())?;
+    output::line(&format!(
+        "{}: {} bytes for {}, {} triangles",
+        arguments.output.display(),
+        scene.blob.bytes().len(),
+        scene.engine.name(),
+        header.counts.triangles
+    ))
+}

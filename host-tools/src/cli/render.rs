@@ -1,0 +1,101 @@
+//! `intray render`: a scene becomes a PNG.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use serde::Serialize;
+
+use super::failure::Failure;
+use super::input::{Scene, SceneArguments};
+use super::{output, progress};
+use crate::render::Rendered;
+
+/// Tiles that threads take turns at. Small enough to share the work, large enough to be worth it.
+pub(super) const TILE: [u16; 2] = [32, 32];
+
+/// Render a scene to a PNG
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+
+    /// Where the picture goes
+    #[arg(short, value_name = "PNG")]
+    output: PathBuf,
+
+    /// Threads [default: one a core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// The answer.
+#[derive(Debug, Serialize)]
+struct Report {
+    kernel: &'static str,
+    width: u32,
+    height: u32,
+    /// CRC-32 of the RGB888 bytes.
+    image_crc32: String,
+    rays: Rays,
+    box_tests: u64,
+    triangle_tests: u64,
+    threads: usize,
+    /// Of rendering alone.
+    seconds: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct Rays {
+    primary: u64,
+    shadow: u64,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let scene = arguments.scene.load()?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.unwrap_or(0).into()).build()?;
+    let begin = Instant::now();
+    let Rendered { picture, counts } = pool.install(|| picture(&scene))?;
+    let seconds = begin.elapsed().as_secs_f64();
+    picture.write_png(&arguments.output)?;
+    let report = Report {
+        kernel: scene.engine.name(),
+        width: picture.width(),
+        height: picture.height(),
+        image_crc32: format!("{:08x}", picture.crc32()),
+        rays: Rays { primary: counts.primary_rays, shadow: counts.shadow_rays },
+        box_tests: counts.box_tests,
+        triangle_tests: counts.triangle_tests,
+        threads: pool.current_num_threads(),
+        seconds,
+    };
+    if arguments.json {
+        return output::json(&report);
+    }
+    let per_ray = |tests: u64| tests as f64 / counts.rays().max(1) as f64;
+    output::line(&format!(
+        "{}: {}x{} by {}, {} rays in {:.2} s on {} threads, {:.1} box and {:.1} triangle tests a ray, CRC-32 {}",
+        arguments.output.display(),
+        report.width,
+        report.height,
+        report.kernel,
+        counts.rays(),
+        seconds,
+        report.threads,
+        per_ray(counts.box_tests),
+        per_ray(counts.triangle_tests),
+        report.image_crc32
+    ))
+}
+
+/// Renders with a progress bar.
+pub(super) fn picture(scene: &Scene) -> Result<Rendered, Failure> {
+    let (header, _) = scene.engine.inspect(scene.blob.bytes())?;
+    let bar = progress::bar("rendering", header.size.map(u64::from).iter().product());
+    let rendered = scene.engine.render(scene.blob.bytes(), TILE, &|pixels| bar.inc(pixels))?;
+    bar.finish_and_clear();
+    Ok(rendered)
+}

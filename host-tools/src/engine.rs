@@ -1,0 +1,111 @@
+//! Kernels by name: what the command line can ask of each, behind one interface.
+
+use std::marker::PhantomData;
+
+use core_rt::blob::{BlobError, Header, Prefix};
+use core_rt::exact::{Exact14, Exact29};
+use core_rt::kernel::Kernel;
+use core_rt::profile::Full;
+use core_rt::scene::Scene;
+
+use crate::model::Model;
+use crate::prepare::{self, Options, PrepareError, Prepared};
+use crate::render::{self, Progress, Rendered};
+
+/// What can be done with a kernel.
+pub trait Engine: Sync {
+    /// The kernel's name.
+    fn name(&self) -> &'static str;
+    /// The kernel's number in a blob.
+    fn id(&self) -> u16;
+    /// The bits of its grid.
+    fn grid_bits(&self) -> u32;
+    /// A model as a blob.
+    ///
+    /// # Errors
+    /// Where the kernel cannot hold it.
+    fn prepare(&self, model: &Model, options: &Options) -> Result<Prepared, PrepareError>;
+    /// The header and the sizes of a blob, checked as the device checks it.
+    ///
+    /// # Errors
+    /// Where the blob is not one for this kernel.
+    fn inspect(&self, blob: &[u8]) -> Result<(Header, Sizes), BlobError>;
+    /// The picture of a blob.
+    ///
+    /// # Errors
+    /// Where the blob is not one for this kernel.
+    fn render(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<Rendered, BlobError>;
+}
+
+/// Bytes of each section, padding left out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Sizes {
+    /// Tree nodes.
+    pub nodes: u64,
+    /// Triangles with their vertices.
+    pub triangles: u64,
+    /// File-order ids.
+    pub ids: u64,
+    /// Normals and their indices.
+    pub normals: u64,
+    /// Materials and lights.
+    pub shading: u64,
+}
+
+#[derive(Debug)]
+struct Of<K>(PhantomData<K>);
+
+impl<K: Kernel> Engine for Of<K> {
+    fn name(&self) -> &'static str {
+        K::NAME
+    }
+
+    fn id(&self) -> u16 {
+        K::ID
+    }
+
+    fn grid_bits(&self) -> u32 {
+        K::GRID_BITS
+    }
+
+    fn prepare(&self, model: &Model, options: &Options) -> Result<Prepared, PrepareError> {
+        prepare::prepare::<K>(model, options)
+    }
+
+    fn inspect(&self, blob: &[u8]) -> Result<(Header, Sizes), BlobError> {
+        let scene = Scene::<Full<K>>::new_checked(blob)?;
+        let sizes = Sizes {
+            nodes: size_of_val(scene.bvh.nodes) as u64,
+            triangles: size_of_val(scene.bvh.triangles) as u64,
+            ids: scene.bvh.ids.size() as u64,
+            normals: (size_of_val(scene.shading.normals) + scene.shading.normal_indices.size()) as u64,
+            shading: (size_of_val(scene.shading.materials) + size_of_val(scene.shading.lights)) as u64,
+        };
+        Ok((scene.header, sizes))
+    }
+
+    fn render(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<Rendered, BlobError> {
+        Ok(render::render(&Scene::<Full<K>>::new_checked(blob)?, tile, progress))
+    }
+}
+
+/// All kernels, the default of `render` first.
+pub const ENGINES: [&dyn Engine; 2] = [&Of::<Exact29>(PhantomData), &Of::<Exact14>(PhantomData)];
+
+/// The kernel of a name.
+#[must_use]
+pub fn by_name(name: &str) -> Option<&'static dyn Engine> {
+    ENGINES.into_iter().find(|engine| engine.name() == name)
+}
+
+/// The kernel that a blob is for.
+///
+/// # Errors
+/// Where it is no blob, or for no kernel of this program.
+pub fn of_blob(blob: &[u8]) -> Result<&'static dyn Engine, BlobError> {
+    let prefix = Prefix::read(blob)?;
+    ENGINES
+        .into_iter()
+        .find(|engine| engine.id() == prefix.kernel)
+        .ok_or(BlobError::Kernel { found: prefix.kernel, expected: ENGINES[0].id() })
+}

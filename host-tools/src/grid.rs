@@ -1,0 +1,103 @@
+//! The grid: scene units to integers, as finely as a kernel's ranges allow.
+//!
+//! All axes share one scale. It is the largest for which the geometry fits the kernel's grid and every camera and point
+//! light the range of origins around it; a kernel whose origins must lie on the grid thereby spans them too.
+
+use core_rt::kernel::{Kernel, Vertices};
+use glam::DVec3;
+use thiserror::Error;
+
+use crate::model::{LightKind, Model};
+
+/// Why a model has no grid.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+pub enum GridError {
+    /// All points are one.
+    #[error("the scene has no extent: all its triangles lie in one point")]
+    NoExtent,
+}
+
+/// `grid = round((scene - origin) * scale)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
+    /// The scene's place of the grid's zero.
+    pub origin: DVec3,
+    /// Grid units per scene unit.
+    pub scale: f64,
+}
+
+impl Grid {
+    /// The finest grid of a kernel for a model.
+    ///
+    /// # Errors
+    /// Where the geometry has no extent.
+    ///
+    /// With k = origin * scale, an axis asks for `g s - k` of the geometry in `[m, M]`, and `o s - k` of the origins in
+    /// `[p, P]`. Some k does iff each lower bound on it is at most each upper bound: four inequalities in s.
+    pub fn fit<K: Kernel>(model: &Model) -> Result<Self, GridError> {
+        let vertices = model.triangles.iter().flat_map(|t| t.vertices).map(|v| model.positions[v as usize]);
+        let geometry = Extent::of(vertices).ok_or(GridError::NoExtent)?;
+        let lights = model.lights.iter().filter_map(|light| match light.kind {
+            LightKind::Point(position) => Some(position),
+            LightKind::Directional(_) => None,
+        });
+        let origins = Extent::of(lights.chain([model.camera.position])).ok_or(GridError::NoExtent)?;
+        if geometry.low == geometry.high {
+            return Err(GridError::NoExtent);
+        }
+
+        // A unit less than the range, so that no rounding leaves it.
+        let (grid_low, grid_high) = (f64::from(K::MARGIN) + 0.5, f64::from((1 << K::GRID_BITS) - K::MARGIN) - 1.5);
+        let (origin_low, origin_high) = (f64::from(K::ORIGINS.start) + 0.5, f64::from(K::ORIGINS.end) - 1.5);
+        let mut scale = f64::INFINITY;
+        for axis in 0..3 {
+            let (g0, g1) = (geometry.low[axis], geometry.high[axis]);
+            let (o0, o1) = (origins.low[axis], origins.high[axis]);
+            for (extent, room) in [
+                (g1 - g0, grid_high - grid_low),
+                (o1 - o0, origin_high - origin_low),
+                (g1 - o0, grid_high - origin_low),
+                (o1 - g0, origin_high - grid_low),
+            ] {
+                if extent > 0.0 {
+                    scale = scale.min(room / extent);
+                }
+            }
+        }
+        let axis_origin = |axis: usize| {
+            let (g0, g1) = (geometry.low[axis] * scale, geometry.high[axis] * scale);
+            let (o0, o1) = (origins.low[axis] * scale, origins.high[axis] * scale);
+            let most = (g0 - grid_low).min(o0 - origin_low);
+            let least = (g1 - grid_high).max(o1 - origin_high);
+            // As low as it may: the geometry then begins at the grid's beginning where nothing else forbids it.
+            most.max(least) / scale
+        };
+        Ok(Self { origin: DVec3::new(axis_origin(0), axis_origin(1), axis_origin(2)), scale })
+    }
+
+    /// The nearest grid point, halves up.
+    #[must_use]
+    pub fn place(&self, point: DVec3) -> [i32; 3] {
+        ((point - self.origin) * self.scale).to_array().map(|c| (c + 0.5).floor() as i32)
+    }
+
+    /// The corners of every triangle on the grid, in file order.
+    #[must_use]
+    pub fn triangles(&self, model: &Model) -> Vec<Vertices> {
+        let placed: Vec<[i32; 3]> = model.positions.iter().map(|&p| self.place(p)).collect();
+        model.triangles.iter().map(|t| t.vertices.map(|v| placed[v as usize])).collect()
+    }
+}
+
+struct Extent {
+    low: DVec3,
+    high: DVec3,
+}
+
+impl Extent {
+    fn of(mut points: impl Iterator<Item = DVec3>) -> Option<Self> {
+        let first = points.next()?;
+        let whole = Self { low: first, high: first };
+        Some(points.fold(whole, |e, p| Self { low: e.low.min(p), high: e.high.max(p) }))
+    }
+}

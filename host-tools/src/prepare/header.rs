@@ -1,0 +1,103 @@
+//! What stands in the header and in the records of shading, from f64.
+
+use core_rt::camera::CameraHeader;
+use core_rt::colour::{Radiance, Transfer};
+use core_rt::kernel::Kernel;
+use core_rt::profile::{Need, Needs};
+use core_rt::record::{Light, Material};
+use glam::DVec3;
+
+use crate::grid::Grid;
+use crate::model::{self, LightKind, Model};
+
+/// Bits below a direction's unit in camera coefficients: at 2^14 pixels a side, the rounding of a step adds up to a
+/// quarter of a unit.
+const FRACTION_BITS: u8 = 16;
+
+/// The camera's coefficients for the model's picture size.
+pub(super) fn camera<K: Kernel>(model: &Model, grid: &Grid) -> CameraHeader {
+    let camera = &model.camera;
+    let forward = (camera.look_at - camera.position).normalize();
+    let right = forward.cross(camera.up).normalize();
+    let up = right.cross(forward);
+    let [width, height] = model.render.size.map(f64::from);
+    // The half extents of the picture at distance 1, and a pixel's share of them.
+    let half_height = libm::tan(camera.fov_y / 2.0);
+    let pixel = 2.0 * half_height / height;
+    let first = forward + right * (pixel * (1.0 - width) / 2.0) - up * (pixel * (1.0 - height) / 2.0);
+    let (step_right, step_down) = (right * pixel, -up * pixel);
+
+    // The largest component of any direction; it is at a corner, since directions are linear in the pixel.
+    let (last_x, last_y) = (width - 1.0, height - 1.0);
+    let largest = [(0.0, 0.0), (last_x, 0.0), (0.0, last_y), (last_x, last_y)]
+        .map(|(x, y)| (first + step_right * x + step_down * y).abs().max_element())
+        .into_iter()
+        .fold(0.0, f64::max);
+    // Two units are left for the rounding of coefficients and of directions.
+    let unit = ((1i64 << K::DIRECTION_BITS) - 2) as f64 / largest * f64::from(1u32 << FRACTION_BITS);
+    let coefficients = |v: DVec3| (v * unit).to_array().map(|c| (c + 0.5).floor() as i64);
+    CameraHeader {
+        eye: grid.place(camera.position),
+        first: coefficients(first),
+        right: coefficients(step_right),
+        down: coefficients(step_down),
+        fraction_bits: FRACTION_BITS,
+    }
+}
+
+/// Light as the blob has it; the strongest channel decides the exponent, and weaker ones round to nearest.
+pub(super) fn radiance(linear: DVec3) -> Radiance {
+    let strongest = linear.max_element();
+    if strongest <= 0.0 {
+        return Radiance::default();
+    }
+    // The exponent for which the strongest mantissa is in [2^15, 2^16) after rounding.
+    let exponent = Radiance::EXPONENTS
+        .clone()
+        .find(|&e| strongest * f64::from(1u32 << 16) / libm::exp2(f64::from(e)) < 65_535.5)
+        .unwrap_or(*Radiance::EXPONENTS.end());
+    let scale = f64::from(1u32 << 16) / libm::exp2(f64::from(exponent));
+    Radiance { mantissa: linear.to_array().map(|c| (c * scale + 0.5).floor().min(65_535.0) as u16), exponent }
+}
+
+/// A material as the blob has it.
+pub(super) fn material(material: &model::Material) -> Material {
+    let albedo = material.diffuse.to_array().map(|c| (c.clamp(0.0, 1.0) * 65_535.0 + 0.5).floor() as u16);
+    Material { emission: radiance(material.emission), albedo, reserved: 0 }
+}
+
+/// A unit vector in Q30.
+pub(super) fn unit_q30(direction: DVec3) -> [i32; 3] {
+    let unit = direction.normalize_or_zero().to_array();
+    unit.map(|c| (c * f64::from(1u32 << 30) + 0.5).floor() as i32)
+}
+
+/// A light as the blob has it.
+pub(super) fn light(light: &model::Light, grid: &Grid) -> Light {
+    let (kind, place) = match light.kind {
+        LightKind::Point(position) => (Light::POINT, grid.place(position)),
+        LightKind::Directional(direction) => (Light::DIRECTIONAL, unit_q30(-direction)),
+    };
+    Light { kind, place, radiance: radiance(light.radiance) }
+}
+
+/// What the model needs, widths of indices aside.
+pub(super) fn needs(model: &Model, materials: &[Material]) -> Needs {
+    let any_light = |wanted: fn(&LightKind) -> bool| model.lights.iter().any(|light| wanted(&light.kind));
+    Needs::NONE
+        .with(Need::PointLight, any_light(|kind| matches!(kind, LightKind::Point(_))))
+        .with(Need::DirectionalLight, any_light(|kind| matches!(kind, LightKind::Directional(_))))
+        .with(Need::Shadows, !model.lights.is_empty())
+        .with(Need::Emission, materials.iter().any(|m| !m.emission.is_black()))
+        .with(Need::Ambient, !radiance(model.render.ambient).is_black())
+        .with(Need::Srgb, model.render.transfer == model::Transfer::Srgb)
+        .with(Need::Linear, model.render.transfer == model::Transfer::Linear)
+}
+
+/// How pixels are encoded.
+pub(super) const fn transfer(transfer: model::Transfer) -> Transfer {
+    match transfer {
+        model::Transfer::Srgb => Transfer::Srgb,
+        model::Transfer::Linear => Transfer::Linear,
+    }
+}

@@ -1,0 +1,158 @@
+//! The blob's bytes. `docs/BLOB.md` specifies them; `core_rt::blob` reads them.
+
+use core_rt::blob::{Counts, Header, MAGIC, Prefix, SourceGrid, TRAILER_SIZE, VERSION, crc32};
+use core_rt::kernel::Kernel;
+use core_rt::profile::Need;
+use core_rt::record::{Material, Record};
+use core_rt::section::ALIGN;
+use core_rt::space::Space;
+use zerocopy::IntoBytes;
+
+use super::{PrepareError, header};
+use crate::grid::Grid;
+use crate::model::Model;
+
+/// A blob in memory, 8-aligned.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Blob {
+    words: Vec<u64>,
+    size: usize,
+}
+
+impl Blob {
+    /// Copies bytes of any alignment, of any length.
+    #[must_use]
+    pub fn from_bytes(bytes: &[u8]) -> Self {
+        let mut words = vec![0; bytes.len().div_ceil(ALIGN)];
+        words.as_mut_bytes()[..bytes.len()].copy_from_slice(bytes);
+        Self { words, size: bytes.len() }
+    }
+
+    /// The bytes.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        &self.words.as_bytes()[..self.size]
+    }
+}
+
+/// What the tree's builder and the kernel made.
+pub(super) struct Parts<'a, K: Kernel> {
+    pub(super) root: u32,
+    pub(super) depth: u8,
+    pub(super) nodes: &'a [K::Node],
+    pub(super) triangles: &'a [K::Triangle],
+    /// The file's number of each triangle.
+    pub(super) ids: &'a [u32],
+    pub(super) materials: &'a [Material],
+}
+
+/// Bytes that grow by sections.
+struct Writer(Vec<u8>);
+
+impl Writer {
+    fn pad(&mut self) {
+        self.0.resize(self.0.len().next_multiple_of(ALIGN), 0);
+    }
+
+    fn records<T: Record>(&mut self, records: &[T]) {
+        self.0.extend_from_slice(records.as_bytes());
+        self.pad();
+    }
+
+    fn integers(&mut self, values: &[u32], wide: bool) {
+        if wide {
+            self.records(values);
+        } else {
+            self.records(&values.iter().map(|&v| v as u16).collect::<Vec<_>>());
+        }
+    }
+}
+
+/// Writes the blob.
+pub(super) fn write<K: Kernel>(model: &Model, grid: &Grid, parts: Parts<'_, K>) -> Result<Blob, PrepareError> {
+    let (normals, corners) = normals::<K>(model, parts.ids);
+    let lights: Vec<_> = model.lights.iter().map(|light| header::light(light, grid)).collect();
+    let wide_ids = model.triangles.len() > 1 << 16;
+    // The largest index is kept for flat triangles.
+    let wide_normals = normals.len() >= 1 << 16;
+    let needs = header::needs(model, parts.materials)
+        .with(Need::SmoothNormals, !corners.is_empty())
+        .with(Need::WideIds, wide_ids)
+        .with(Need::WideNormals, wide_normals);
+    let header = Header {
+        needs,
+        // Pictures are at most 2^14 a side: the importer's bound.
+        size: model.render.size.map(|s| s.min(u16::MAX.into()) as u16),
+        camera: header::camera::<K>(model, grid),
+        background: header::radiance(model.background),
+        ambient: header::radiance(model.render.ambient),
+        transfer: header::transfer(model.render.transfer),
+        root: parts.root,
+        depth: parts.depth,
+        counts: Counts {
+            nodes: parts.nodes.len() as u32,
+            triangles: parts.triangles.len() as u32,
+            smooth: corners.len() as u32 / 3,
+            normals: normals.len() as u32,
+            materials: parts.materials.len() as u32,
+            lights: lights.len() as u32,
+        },
+        file_triangles: model.triangles.len() as u32,
+        source: SourceGrid {
+            origin_bits: grid.origin.to_array().map(f64::to_bits),
+            scale_bits: grid.scale.to_bits(),
+        },
+    };
+    let encoded = postcard::to_stdvec(&header).unwrap_or_default();
+    let mut writer = Writer(vec![0; core_rt::blob::PREFIX_SIZE]);
+    writer.records(&encoded);
+    writer.records(parts.nodes);
+    writer.records(parts.triangles);
+    writer.integers(parts.ids, wide_ids);
+    writer.integers(&corners, wide_normals);
+    writer.records(&normals);
+    writer.records(parts.materials);
+    writer.records(&lights);
+    let Writer(mut bytes) = writer;
+    let total = bytes.len() + TRAILER_SIZE;
+    let total_size =
+        u32::try_from(total).map_err(|_| PrepareError::TooLarge { bytes: total as u64 })?;
+    let prefix = Prefix {
+        magic: MAGIC,
+        version: VERSION,
+        kernel: K::ID,
+        header_size: encoded.len() as u32,
+        total_size,
+        reserved: 0,
+    };
+    bytes[..core_rt::blob::PREFIX_SIZE].copy_from_slice(prefix.as_bytes());
+    bytes.extend_from_slice(&[0; 4]);
+    let checksum = crc32(&bytes);
+    bytes.extend_from_slice(&checksum.to_le_bytes());
+    Ok(Blob::from_bytes(&bytes))
+}
+
+/// The normals that are used, and three indices a triangle; both empty where no triangle is smooth.
+fn normals<K: Kernel>(model: &Model, ids: &[u32]) -> (Vec<<K::Space as Space>::Normal>, Vec<u32>) {
+    let triangles = || ids.iter().map(|&id| model.triangles[id as usize].normals);
+    if triangles().all(|normals| normals.is_none()) {
+        return (Vec::new(), Vec::new());
+    }
+    let mut numbers = vec![u32::MAX; model.normals.len()];
+    let mut records = Vec::new();
+    let mut corners = Vec::with_capacity(3 * ids.len());
+    for normals in triangles() {
+        match normals {
+            None => corners.extend([u32::MAX; 3]),
+            Some(normals) => corners.extend(normals.map(|old| {
+                let number = &mut numbers[old as usize];
+                if *number == u32::MAX {
+                    *number = records.len() as u32;
+                    records.push(K::Space::normal(header::unit_q30(model.normals[old as usize])));
+                }
+                *number
+            })),
+        }
+    }
+    (records, corners)
+}
