@@ -5,3 +5,10 @@ pub mod meshes;
 pub mod oracle;
 pub mod random;
 pub mod rays;
+pub mod shared;
+
+/// How much more the long run does: 10 with `INTRAY_LONG` set, else 1.
+#[must_use]
+pub fn effort() -> usize {
+    if std::env::var_os("INTRAY_LONG").is_some() { 10 } else { 1 }
+}

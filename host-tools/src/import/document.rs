@@ -138,7 +138,7 @@ impl Document {
         if colour.min_element() >= 0.0 && colour.max_element() <= most {
             return Ok(colour);
         }
-        let message = format!("{key} {colour} is out of range; each channel is from 0 to {most:e}");
+        let message = format!("{key} {colour} is out of range; each channel is from 0 to {most:?}");
         Err(self.error(value.span(), message))
     }
 }

@@ -193,11 +193,11 @@ mod tests {
         refused(&[
             (
                 "[material.wall]\ncolour = [0, 1.5, 0]",
-                "3: colour [0, 1.5, 0] is out of range; each channel is from 0 to 1",
+                "3: colour [0, 1.5, 0] is out of range; each channel is from 0 to 1.0",
             ),
             (
                 "[material.other]\ncolour = [0, -1, 0]",
-                "3: colour [0, -1, 0] is out of range; each channel is from 0 to 1",
+                "3: colour [0, -1, 0] is out of range; each channel is from 0 to 1.0",
             ),
             (
                 "[material.wall]\nchecker = { size = 0, other = [0, 0, 0] }",

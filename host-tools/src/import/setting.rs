@@ -218,7 +218,7 @@ mod tests {
 
     #[test]
     fn samples_are_accepted_with_a_warning() {
-        let imported = room("[render]\nsamples = 4\nmax_depth = 0").unwrap();
+        let imported = room("[render]\nsamples = 4\nmax_depth = 0\n[material.wall]").unwrap();
         let expected = "built-in s.toml:3: samples: more than one a pixel is not supported yet; \
                         drawn with one";
         assert_eq!(warnings(&imported), [expected]);
