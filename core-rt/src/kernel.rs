@@ -32,6 +32,23 @@ impl Bounds {
         not_below && self.high.iter().zip(&other.high).all(|(a, b)| a >= b)
     }
 
+    /// Whether a point is at most `span` from everything in the box, along each axis.
+    #[must_use]
+    pub fn spanned_from(&self, point: Triple<i32>, span: i32) -> bool {
+        let reaches = |(&point, (&low, &high)): (&i32, (&i32, &i32))| {
+            let point = i64::from(point);
+            point - i64::from(low) <= i64::from(span) && i64::from(high) - point <= i64::from(span)
+        };
+        point.iter().zip(self.low.iter().zip(&self.high)).all(reaches)
+    }
+
+    /// The box of two boxes.
+    #[must_use]
+    pub fn union(&self, other: &Self) -> Self {
+        let pick = |f: fn(i32, i32) -> i32, a: Triple<i32>, b: Triple<i32>| [f(a[0], b[0]), f(a[1], b[1]), f(a[2], b[2])];
+        Self { low: pick(i32::min, self.low, other.low), high: pick(i32::max, self.high, other.high) }
+    }
+
     /// The box of three corners.
     #[must_use]
     pub fn of(vertices: &Vertices) -> Self {
@@ -69,8 +86,8 @@ pub trait Kernel: Copy + Debug + Default + Send + Sync + 'static {
     const GRID_BITS: u32;
     /// See `GRID_BITS`.
     const MARGIN: i32;
-    /// Where origins of rays (cameras, point lights) may lie.
-    const ORIGINS: core::ops::Range<i32>;
+    /// Origins of rays (cameras, point lights) and vertices differ by at most this along each axis.
+    const SPAN: i32;
     /// The largest magnitude of a direction's component, as a power of two.
     const DIRECTION_BITS: u32;
     /// The largest material index that a triangle's record holds.

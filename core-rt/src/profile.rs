@@ -97,6 +97,12 @@ impl Needs {
         self.0 & need as u32 != 0
     }
 
+    /// Whether every need in the set is one of [`Need::ALL`].
+    #[must_use]
+    pub const fn is_known(self) -> bool {
+        self.0 & !Self::ALL.0 == 0
+    }
+
     /// The set with a need added, if `wanted`.
     #[must_use]
     pub const fn with(self, need: Need, wanted: bool) -> Self {

@@ -1,7 +1,7 @@
 //! The grid: scene units to integers, as finely as a kernel's ranges allow.
 //!
-//! All axes share one scale. It is the largest for which the geometry fits the kernel's grid and every camera and point
-//! light the range of origins around it; a kernel whose origins must lie on the grid thereby spans them too.
+//! All axes share one scale. It is the largest for which the geometry fits the kernel's grid, and every camera and point
+//! light is within the kernel's span of all of it.
 
 use core_rt::kernel::{Kernel, Vertices};
 use glam::DVec3;
@@ -32,8 +32,8 @@ impl Grid {
     /// # Errors
     /// Where the geometry has no extent.
     ///
-    /// With k = origin * scale, an axis asks for `g s - k` of the geometry in `[m, M]`, and `o s - k` of the origins in
-    /// `[p, P]`. Some k does iff each lower bound on it is at most each upper bound: four inequalities in s.
+    /// With k = origin * scale, an axis asks for `g s - k` of the geometry in `[m, M]`, and for `|o s - g s|` of every
+    /// origin at most the kernel's span.
     pub fn fit<K: Kernel>(model: &Model) -> Result<Self, GridError> {
         let vertices = model.triangles.iter().flat_map(|t| t.vertices).map(|v| model.positions[v as usize]);
         let geometry = Extent::of(vertices).ok_or(GridError::NoExtent)?;
@@ -48,30 +48,19 @@ impl Grid {
 
         // A unit less than the range, so that no rounding leaves it.
         let (grid_low, grid_high) = (f64::from(K::MARGIN) + 0.5, f64::from((1 << K::GRID_BITS) - K::MARGIN) - 1.5);
-        let (origin_low, origin_high) = (f64::from(K::ORIGINS.start) + 0.5, f64::from(K::ORIGINS.end) - 1.5);
+        let span = f64::from(K::SPAN) - 1.0;
         let mut scale = f64::INFINITY;
         for axis in 0..3 {
             let (g0, g1) = (geometry.low[axis], geometry.high[axis]);
             let (o0, o1) = (origins.low[axis], origins.high[axis]);
-            for (extent, room) in [
-                (g1 - g0, grid_high - grid_low),
-                (o1 - o0, origin_high - origin_low),
-                (g1 - o0, grid_high - origin_low),
-                (o1 - g0, origin_high - grid_low),
-            ] {
+            for (extent, room) in [(g1 - g0, grid_high - grid_low), (g1 - o0, span), (o1 - g0, span)] {
                 if extent > 0.0 {
                     scale = scale.min(room / extent);
                 }
             }
         }
-        let axis_origin = |axis: usize| {
-            let (g0, g1) = (geometry.low[axis] * scale, geometry.high[axis] * scale);
-            let (o0, o1) = (origins.low[axis] * scale, origins.high[axis] * scale);
-            let most = (g0 - grid_low).min(o0 - origin_low);
-            let least = (g1 - grid_high).max(o1 - origin_high);
-            // As low as it may: the geometry then begins at the grid's beginning where nothing else forbids it.
-            most.max(least) / scale
-        };
+        // The geometry begins where the grid does.
+        let axis_origin = |axis: usize| geometry.low[axis] - grid_low / scale;
         Ok(Self { origin: DVec3::new(axis_origin(0), axis_origin(1), axis_origin(2)), scale })
     }
 

@@ -106,12 +106,15 @@ fn on_grid<W: Width>(triangles: &[Triangle]) -> (Vec<Vertices>, Vec<Triangle>) {
         .unzip()
 }
 
-/// Rays start anywhere where a camera may be, and on the margins, where they stand off surfaces.
-fn bounds<W: Width>() -> Bounds {
-    let margin = i64::from(W::MARGIN);
+/// Rays start anywhere on the grid; where a mesh leaves the span for it, also outside.
+fn bounds<W: Width>(triangles: &[Triangle]) -> Bounds {
+    let coordinates = || triangles.iter().flatten().flatten().copied();
+    let (low, high) = (coordinates().min().unwrap_or(0), coordinates().max().unwrap_or(0));
+    // What stand-off adds to the margin is still within the span's budget.
+    let span = i64::from(W::SPAN);
     Bounds {
         grid_bits: W::GRID_BITS,
-        origin: [i64::from(W::ORIGINS.start) - margin, i64::from(W::ORIGINS.end) - 1 + margin],
+        origin: [(high - span).min(0), (low + span).max((1 << W::GRID_BITS) - 1)],
         direction: (1 << W::DIRECTION_BITS) - 1,
     }
 }
@@ -124,7 +127,7 @@ where
     let (corners, triangles) = on_grid::<W>(triangles);
     let built = Built::<W>::new(&corners, leaf_max);
     let oracle = Oracle::new(&triangles);
-    let rays: Vec<(Kind, tests::oracle::Ray)> = Rays::new(&triangles, bounds::<W>(), seed)
+    let rays: Vec<(Kind, tests::oracle::Ray)> = Rays::new(&triangles, bounds::<W>(&triangles), seed)
         .take(count)
         .collect();
     let plain: Vec<tests::oracle::Ray> = rays.iter().map(|(_, ray)| *ray).collect();
@@ -204,7 +207,7 @@ fn a_wrong_triangle_is_noticed() {
     moved[3][0][1] += 1;
     let built = Built::<Width29>::new(&moved, 8);
     let oracle = Oracle::new(&known);
-    let wrong = Rays::new(&known, bounds::<Width29>(), 1)
+    let wrong = Rays::new(&known, bounds::<Width29>(&known), 1)
         .take(20_000)
         .filter(|(_, ray)| built.agrees(ray, oracle.nearest(ray).as_ref()).is_err())
         .count();

@@ -7,9 +7,9 @@ use heapless::Vec;
 
 use super::{BlobError, Header};
 use crate::bvh::{Bvh, Child};
-use crate::colour::Radiance;
+use crate::colour::{Radiance, Transfer};
 use crate::kernel::{Bounds, Kernel};
-use crate::profile::Need;
+use crate::profile::{Need, Needs};
 use crate::record::{Light, Material};
 use crate::scene::{MAX_DEPTH, Shading};
 use crate::space::{Space, is_unit_q30};
@@ -17,6 +17,7 @@ use crate::space::{Space, is_unit_q30};
 /// Checks everything that the sections say.
 pub(crate) fn check<K: Kernel>(header: &Header, bvh: &Bvh<'_, K>, shading: &Shading<'_, K>) -> Result<(), BlobError> {
     tree(header, bvh)?;
+    origins(header, bvh, shading)?;
     for (index, triangle) in (0..).zip(bvh.triangles) {
         let material = K::material(triangle);
         let vertices = K::vertices(triangle);
@@ -34,39 +35,78 @@ pub(crate) fn check<K: Kernel>(header: &Header, bvh: &Bvh<'_, K>, shading: &Shad
     let in_range = radiances
         .chain([&header.background, &header.ambient])
         .all(|radiance| Radiance::EXPONENTS.contains(&radiance.exponent));
-    let lights = shading.lights.iter().all(|light| light_is_valid::<K>(header, light));
+    let lights = shading.lights.iter().all(light_is_valid);
     let reserved = shading.materials.iter().all(|m: &Material| m.reserved == 0);
     let normals = shading.normals.iter().all(|normal| K::Space::is_unit(normal));
-    if in_range && lights && reserved && normals { Ok(()) } else { Err(BlobError::Shading) }
+    if !(in_range && lights && reserved && normals) {
+        return Err(BlobError::Shading);
+    }
+    match used(header, shading).first_missing_in(header.needs) {
+        Some(need) => Err(BlobError::Undeclared(need)),
+        None => Ok(()),
+    }
 }
 
-/// A light must be of a kind that the header declares, and where rays may start.
-fn light_is_valid<K: Kernel>(header: &Header, light: &Light) -> bool {
+/// The eye and point lights must be where the kernel's differences hold them.
+fn origins<K: Kernel>(header: &Header, bvh: &Bvh<'_, K>, shading: &Shading<'_, K>) -> Result<(), BlobError> {
+    let whole = match (bvh.nodes, bvh.triangles) {
+        ([root, ..], _) => {
+            let [a, b] = K::boxes(root);
+            a.union(&b)
+        }
+        // The root is a leaf.
+        ([], [first, rest @ ..]) => {
+            let bounds = |triangle| Bounds::of(&K::vertices(triangle));
+            rest.iter().fold(bounds(first), |whole, triangle| whole.union(&bounds(triangle)))
+        }
+        ([], []) => return Err(BlobError::Sections),
+    };
+    let lights = shading.lights.iter().filter(|light| light.kind == Light::POINT).map(|light| light.place);
+    let mut all = lights.chain([header.camera.eye]);
+    if all.all(|origin| whole.spanned_from(origin, K::SPAN)) { Ok(()) } else { Err(BlobError::Origin) }
+}
+
+/// A light must be of a known kind.
+fn light_is_valid(light: &Light) -> bool {
     match light.kind {
-        Light::POINT => header.needs.has(Need::PointLight) && light.place.iter().all(|c| K::ORIGINS.contains(c)),
-        Light::DIRECTIONAL => header.needs.has(Need::DirectionalLight) && is_unit_q30(light.place),
+        Light::POINT => true,
+        Light::DIRECTIONAL => is_unit_q30(light.place),
         _ => false,
     }
+}
+
+/// What shading comes upon. A profile that was derived from the header must not be without it: the picture would
+/// depend on the profile.
+fn used<K: Kernel>(header: &Header, shading: &Shading<'_, K>) -> Needs {
+    let any_light = |kind| shading.lights.iter().any(|light| light.kind == kind);
+    Needs::NONE
+        .with(Need::PointLight, any_light(Light::POINT))
+        .with(Need::DirectionalLight, any_light(Light::DIRECTIONAL))
+        .with(Need::Shadows, !shading.lights.is_empty())
+        .with(Need::Emission, shading.materials.iter().any(|m| !m.emission.is_black()))
+        .with(Need::Ambient, !header.ambient.is_black())
+        .with(Need::Srgb, header.transfer == Transfer::Srgb)
+        .with(Need::Linear, header.transfer == Transfer::Linear)
 }
 
 /// A subtree to be checked: its reference, the node and slot that hold it, and its level.
 type Pending = (u32, Option<(u32, bool)>, u8);
 
 fn tree<K: Kernel>(header: &Header, bvh: &Bvh<'_, K>) -> Result<(), BlobError> {
-    if usize::from(header.depth) > MAX_DEPTH {
-        return Err(BlobError::Depth { stated: header.depth });
-    }
+    // The root has no parent, but what the box test computes with must lie on the grid.
+    let (low, high) = (K::MARGIN, (1 << K::GRID_BITS) - 1 - K::MARGIN);
+    let grid = Bounds { low: [low; 3], high: [high; 3] };
     let (mut next_node, mut next_triangle) = (0, 0);
     let mut pending: Vec<Pending, { MAX_DEPTH + 1 }> = Vec::new();
     let mut current: Pending = (bvh.root, None, 0);
     loop {
         let (reference, holder, level) = current;
         let node = holder.map_or(0, |(node, _)| node);
-        let bounds = holder.and_then(|(node, second)| {
+        let held = holder.and_then(|(node, second)| {
             let [a, b] = K::boxes(bvh.nodes.get(node as usize)?);
             Some(if second { b } else { a })
         });
-        let inside = |content: &Bounds| bounds.is_none_or(|bounds| bounds.contains(content));
+        let inside = |content: &Bounds| held.unwrap_or(grid).contains(content);
         match Child::unpack(reference) {
             Child::Node(index) => {
                 if index != next_node {

@@ -68,8 +68,12 @@ pub enum BlobError {
         /// The record's index.
         index: u32,
     },
+    /// The eye or a light is farther from the geometry than the kernel's numbers reach.
+    Origin,
     /// A material, a light or a normal has a value out of range.
     Shading,
+    /// The contents use what the header does not declare.
+    Undeclared(Need),
     /// The profile lacks what the scene needs.
     Missing(Need),
 }
@@ -100,7 +104,9 @@ impl Display for BlobError {
             Self::Depth { stated } => write!(f, "the blob's tree is deeper than the {stated} levels that it states"),
             Self::Bounds { node } => write!(f, "a box does not enclose what is in it, at node {node}"),
             Self::Triangle { index } => write!(f, "triangle record {index} is inconsistent"),
+            Self::Origin => f.write_str("the camera or a light is too far from the geometry for the blob's kernel"),
             Self::Shading => f.write_str("a material, a light or a normal is out of range"),
+            Self::Undeclared(need) => write!(f, "the blob has {need}, which its header does not declare"),
             Self::Missing(need) => write!(f, "the scene needs {need}, which this profile leaves out"),
         }
     }

@@ -7,7 +7,7 @@ use super::BlobError;
 use crate::camera::CameraHeader;
 use crate::colour::{Radiance, Transfer};
 use crate::profile::Needs;
-use crate::section::ALIGN;
+use crate::section::{ALIGN, Reader};
 
 /// How a blob begins. The first byte is no text; the line end shows a transfer that changed line ends.
 pub const MAGIC: [u8; 8] = *b"\x89intray\n";
@@ -132,23 +132,22 @@ pub(crate) fn open(bytes: &[u8], kernel: u16) -> Result<(Header, &[u8]), BlobErr
     if prefix.kernel != kernel {
         return Err(BlobError::Kernel { found: prefix.kernel, expected: kernel });
     }
-    let trailer = bytes.len().checked_sub(TRAILER_SIZE).ok_or(BlobError::Header)?;
-    let (body, trailer) = bytes.split_at_checked(trailer).ok_or(BlobError::Header)?;
-    let stated = trailer.last_chunk::<4>().map_or(0, |b| u32::from_le_bytes(*b));
-    let computed = crc32(bytes.get(..bytes.len().saturating_sub(4)).unwrap_or_default());
+    let (summed, stated) = bytes.split_last_chunk::<4>().ok_or(BlobError::Header)?;
+    let (stated, computed) = (u32::from_le_bytes(*stated), crc32(summed));
     if stated != computed {
         return Err(BlobError::Checksum { stated, computed });
     }
     if !bytes.as_ptr().addr().is_multiple_of(ALIGN) {
         return Err(BlobError::Misaligned);
     }
-    let size = prefix.header_size as usize;
-    let padded = size.checked_next_multiple_of(ALIGN).ok_or(BlobError::Header)?;
-    let rest = body.get(PREFIX_SIZE..).ok_or(BlobError::Header)?;
-    let sections = rest.get(padded..).ok_or(BlobError::Header)?;
-    let encoded = rest.get(..size).ok_or(BlobError::Header)?;
+    let (body, zero) = summed.split_last_chunk::<4>().ok_or(BlobError::Header)?;
+    if prefix.reserved != 0 || *zero != [0; 4] {
+        return Err(BlobError::Header);
+    }
+    let mut reader = Reader { bytes: body.get(PREFIX_SIZE..).ok_or(BlobError::Header)? };
+    let encoded = reader.records(prefix.header_size).ok_or(BlobError::Header)?;
     match postcard::take_from_bytes::<Header>(encoded) {
-        Ok((header, [])) => Ok((header, sections)),
+        Ok((header, [])) => Ok((header, reader.bytes)),
         _ => Err(BlobError::Header),
     }
 }

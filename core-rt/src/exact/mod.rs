@@ -25,7 +25,6 @@ pub use width29::Width29;
 
 use core::cmp::Ordering;
 use core::marker::PhantomData;
-use core::ops::Range;
 
 use crate::camera::Camera;
 use crate::kernel::{Bounds, Kernel, NONE, Surface, Vertices};
@@ -36,7 +35,7 @@ use crate::space::Space;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Exact<W>(PhantomData<W>);
 
-/// 14-bit grid, 32-bit hot path: for a Cortex-M0 and small pictures.
+/// 14-bit grid (15 where the camera is inside the scene), 32-bit hot path: for a Cortex-M0 and small pictures.
 pub type Exact14 = Exact<Width14>;
 
 /// 29-bit grid, 64-bit hot path: for hosts, and the best picture.
@@ -47,7 +46,7 @@ impl<W: Width> Kernel for Exact<W> {
     const NAME: &'static str = W::NAME;
     const GRID_BITS: u32 = W::GRID_BITS;
     const MARGIN: i32 = W::MARGIN;
-    const ORIGINS: Range<i32> = W::ORIGINS;
+    const SPAN: i32 = W::SPAN;
     const DIRECTION_BITS: u32 = W::DIRECTION_BITS;
     const MATERIALS_MAX: u32 = W::MATERIALS_MAX;
 

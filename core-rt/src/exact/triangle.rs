@@ -9,7 +9,7 @@
 //!
 //! **Filter.** Let e be below 2^b for all edges e of the triangle (b is its `shift`), and q = R >> b. Then
 //! u = e2 . q is U / 2^b low or high by less than |e2|_1, since each component of R / 2^b - q is in [0, 1). So
-//! |u - U / 2^b| < 3 * 2^b, and likewise v. `|u| <= 3 * 2^b * 2^(CROSS_BITS - b)` fits the word.
+//! |u - U / 2^b| < 3 * 2^b, and likewise v. With R below 2^c, `|u| <= 3 * 2^b * 2^(c - b)` fits the word.
 //! The record keeps n = N >> k, k = max(0, 2 b - NORMAL_BITS). Then -(D . n) is det / 2^k within |D|_1, and shifted right
 //! by b - k it is det / 2^b within (3 * 2^DIRECTION_BITS >> (b - k)) + 1. W is a triple product with the third edge, as
 //! U and V are with theirs, so W / 2^b fits the word although its terms' sum may not: it is computed by wrapping.
@@ -142,7 +142,7 @@ pub(super) fn intersect<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Sho
         return None;
     }
 
-    // b - k = min(b, NORMAL_BITS - b), and b <= GRID_BITS < NORMAL_BITS.
+    // b - k = min(b, NORMAL_BITS - b), and b <= GRID_BITS <= NORMAL_BITS.
     let down = shift.min(W::NORMAL_BITS - shift);
     let det = -dot(ray.direction, triangle.n()) >> down;
     let det_error = (((W::Word::ONE + W::Word::ONE + W::Word::ONE) << W::DIRECTION_BITS) >> down) + W::Word::ONE;
@@ -184,7 +184,7 @@ fn depth<W: Width>(
     if numerator <= W::Wide::default() {
         return None;
     }
-    // Shifts: tn below 2^(3 + CROSS_BITS + GRID_BITS) has room for DIRECTION_BITS more in Wide.
+    // tn is below 2^47 (2^92) and a reach within -DIRECTION_BITS ..= 3: both shifts have room.
     let within_reach = match ray.reach {
         None => true,
         Some(reach @ 0..) => numerator < denominator << reach.unsigned_abs(),

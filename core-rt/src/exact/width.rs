@@ -2,7 +2,7 @@
 
 use core::cmp::Ordering;
 use core::fmt::Debug;
-use core::ops::{Add, Neg, Range, Shl, Sub};
+use core::ops::{Add, Neg, Shl, Sub};
 
 use super::boxes::BoxNode;
 use crate::kernel::Surface;
@@ -43,12 +43,8 @@ pub trait Reciprocal: Copy + Debug {
 
 /// The widths of an exact kernel.
 ///
-/// | | vertices | origins | directions | R = S x D | exact products |
-/// | --- | --- | --- | --- | --- | --- |
-/// | symbol | `2^GRID_BITS` | `ORIGINS` | `2^DIRECTION_BITS` | `2^CROSS_BITS` | `Wide` |
-///
-/// For all vertices v and origins o: `|o - v| 2^DIRECTION_BITS <= 2^(CROSS_BITS - 1)`, so that R fits `CROSS_BITS`;
-/// and `3 * 2^CROSS_BITS` fits the word.
+/// Let vertices be below `2^GRID_BITS`, differences of origins and vertices below `2^s`, directions below
+/// `2^DIRECTION_BITS`, and c = 1 + s + DIRECTION_BITS. Then R = S x D is below `2^c`, and `3 * 2^c` must fit the word.
 pub trait Width: Copy + Debug + Default + Send + Sync + 'static {
     /// See [`Kernel::ID`](crate::kernel::Kernel::ID).
     const ID: u16;
@@ -58,8 +54,8 @@ pub trait Width: Copy + Debug + Default + Send + Sync + 'static {
     const GRID_BITS: u32;
     /// See [`Kernel::MARGIN`](crate::kernel::Kernel::MARGIN).
     const MARGIN: i32;
-    /// See [`Kernel::ORIGINS`](crate::kernel::Kernel::ORIGINS).
-    const ORIGINS: Range<i32>;
+    /// See [`Kernel::SPAN`](crate::kernel::Kernel::SPAN).
+    const SPAN: i32;
     /// Directions are below 2 to this, and at least 2 to one less in their largest component.
     const DIRECTION_BITS: u32;
     /// Stored normals are at most 2 to this: `2^(NORMAL_BITS + DIRECTION_BITS) * 3` fits the word.

@@ -1,17 +1,19 @@
-//! 14 bits: everything on the hot path in `i32`, exact decisions in `i64`.
+//! 32 bits: everything on the hot path in `i32`, exact decisions in `i64`.
 //!
 //! | value | bound | fits |
 //! | --- | --- | --- |
-//! | vertices, edges | < 2^14 | `i16` |
+//! | vertices, edges | < 2^15 | `i16` |
 //! | origins - vertices | < 2^15 | |
 //! | directions D | < 2^13, largest >= 2^12 | |
 //! | R = S x D | < 2^29 | `i32` |
-//! | N = e1 x e2 | < 2^28 (area of a projection) | `i32` |
-//! | U, V, det, tn | < 3 * 2^14 * 2^29 < 2^45 | `i64` |
+//! | N = e1 x e2 | < 2^30 (area of a projection) | `i32` |
+//! | U, V, det, tn | < 3 * 2^15 * 2^30 < 2^47 | `i64` |
 //! | t | < 2^15 / 2^12 = 2^3 | Q13 in 16 bits |
+//!
+//! The budget is on differences, so a camera inside the geometry costs nothing and the grid has 15 bits; one that looks
+//! on from outside takes about one of them. The kernel is named for the 14 that are always there.
 
 use core::cmp::Ordering;
-use core::ops::Range;
 
 use super::boxes::BoxNode14;
 use super::width::{Reciprocal, Width};
@@ -24,13 +26,13 @@ use crate::space::{Grid14, Space};
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Width14;
 
-/// How far rays start above a surface, in grid units.
+/// Half of how far rays start above a surface, in grid units: they start 3/2 above.
 ///
-/// The resolved point is within 1/4 + 1/32 of the true one along each axis (t is within 2^-16, D below 2^13, and the
-/// rounding to Q4), the unit normal within 2^-12 along each axis, and the rounding to the grid is 1/2. Along the
-/// normal that is at most sqrt(3) (9/32 + 1/2 + 2^-11) < 1.36 < 2 (1 - 2^-11): the origin is on the normal's side of the
-/// plane, and a ray that leaves to that side does not meet it.
-const STAND_OFF: i32 = 2;
+/// The resolved point is within 1/4 + 1/32 of the true one along each axis (t is within 2^-16 (1 + 2^-7) and D below 2^13,
+/// so 1/8, and the rounding to Q4), the unit normal within 2^-12 along each axis, and the rounding to the grid is 1/2.
+/// Along the normal that is at most sqrt(3) (9/32 + 1/2 + 2^-11) < 1.36 < 3/2 (1 - 2^-11): the origin is on the normal's
+/// side of the plane, and a ray that leaves to that side does not meet it.
+const STAND_OFF_2X: i32 = 3;
 
 /// mantissa, shift: `delta * mantissa >> shift` is t in Q13.
 #[derive(Clone, Copy, Debug)]
@@ -63,10 +65,9 @@ impl Reciprocal for Reciprocal14 {
 impl Width for Width14 {
     const ID: u16 = 14;
     const NAME: &'static str = "exact14";
-    const GRID_BITS: u32 = 14;
-    const MARGIN: i32 = 0;
-    /// |o - v| < 2^15 for every vertex v in [0, 2^14), with room for [`STAND_OFF`] beyond the grid.
-    const ORIGINS: Range<i32> = -(1 << 14)..(1 << 15);
+    const GRID_BITS: u32 = 15;
+    const MARGIN: i32 = 4;
+    const SPAN: i32 = (1 << 15) - 4;
     const DIRECTION_BITS: u32 = 13;
     const NORMAL_BITS: u32 = 15;
     const MATERIALS_MAX: u32 = (1 << 12) - 1;
@@ -84,13 +85,14 @@ impl Width for Width14 {
     type Node = BoxNode14;
     type Reciprocal = Reciprocal14;
 
-    /// By 14-bit limbs of b, so that a Cortex-M0 needs `muls` alone. For |a| <= 2^15 and |b| <= 2^28 (normals), or
-    /// |a| < 2^14 and |b| < 2^29 (R): high sum <= 3 * 2^29, low sum < 3 * 2^29.
+    /// By 15-bit limbs of b, so that a Cortex-M0 needs `muls` alone. For |a| < 2^15 and |b| <= 2^30 a limb's product is at
+    /// most 2^15 (2^15 - 1), and two of them fit; the third is added in 64 bits.
     #[inline]
     fn dot(a: Triple<i32>, b: Triple<i32>) -> i64 {
-        let high = a[0] * (b[0] >> 14) + a[1] * (b[1] >> 14) + a[2] * (b[2] >> 14);
-        let low = a[0] * (b[0] & 0x3fff) + a[1] * (b[1] & 0x3fff) + a[2] * (b[2] & 0x3fff);
-        (i64::from(high) << 14) + i64::from(low)
+        let sum = |limb: fn(i32) -> i32| {
+            i64::from(a[0] * limb(b[0]) + a[1] * limb(b[1])) + i64::from(a[2] * limb(b[2]))
+        };
+        (sum(|b| b >> 15) << 15) + sum(|b| b & 0x7fff)
     }
 
     #[inline]
@@ -122,11 +124,11 @@ impl Width for Width14 {
 
     /// t to Q16 by one correction of the approximate depth: with t0 in Q16, the remainder (tn << 16) - t0 det is at most
     /// SLACK * 2^3 = 2^6 determinants, and its quotient by the 16-bit reciprocal is within 2^-7 of true before the floor. So t
-    /// is low by less than 2^-16 (1 + 2^-7), and |D t| < 2^13 * 2^19 / 2 fits (|D_i| t is at most 2^15 grid units).
+    /// is low by less than 2^-16 (1 + 2^-7). |D t| is at most SPAN grid units, so below 2^31 - 2^18 in Q16.
     #[inline]
     fn point(origin: Triple<i32>, direction: Triple<i32>, numerator: i64, denominator: i64) -> Triple<i32> {
         let t0_q16 = Self::depth(numerator, denominator) << 3;
-        // tn < 2^45, so tn << 16 fits; t0 det < 2^19 * 2^44 = 2^63 bounds the same value within 2^6 det.
+        // tn < 2^47, so tn << 16 fits, and t0 det is the same within 2^6 det < 2^51.
         let remainder = (numerator << 16) - i64::from(t0_q16) * denominator;
         let bits = i64::BITS - denominator.leading_zeros();
         let r = reciprocal(if bits > 16 { denominator >> (bits - 16) } else { denominator << (16 - bits) } as u32);
@@ -148,8 +150,8 @@ impl Width for Width14 {
     #[inline]
     fn stand_off(surface: &Surface<Grid14>) -> Triple<i32> {
         let placed = |point_q4: i32, unit_q14: i32| {
-            // One rounding: the sum in Q14, the point being below 2^16 grid units.
-            round_shift((point_q4 << (14 - POINT_BITS)) + STAND_OFF * unit_q14, 14)
+            // One rounding: the sum in Q15, the point being below 2^15 + 1 grid units.
+            round_shift((point_q4 << (15 - POINT_BITS)) + STAND_OFF_2X * unit_q14, 15)
         };
         let n = surface.normal.map(|c| i32::from(c.to_bits()));
         [placed(surface.point[0], n[0]), placed(surface.point[1], n[1]), placed(surface.point[2], n[2])]
@@ -167,7 +169,6 @@ impl Width for Width14 {
 
     #[inline(always)]
     fn split_meta(meta: i16) -> (u32, u32) {
-        // 15 is no shift, but 15 = NORMAL_BITS harms nothing.
         (u32::from(meta as u16 & 15), u32::from(meta as u16 >> 4))
     }
 }

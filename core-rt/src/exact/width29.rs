@@ -2,18 +2,17 @@
 //!
 //! | value | bound | fits |
 //! | --- | --- | --- |
-//! | vertices, origins, edges | < 2^29 | `i32` |
+//! | vertices, edges, origins - vertices | < 2^29 | `i32` |
 //! | directions D | < 2^31, largest >= 2^30 | `i32` |
 //! | R = S x D | < 2^61 | `i64` |
 //! | N = e1 x e2 | < 2^58 (area of a projection) | `i64` |
 //! | U, V, det, tn | < 3 * 2^29 * 2^61 < 2^92 | `i128` |
 //! | t | <= 2^29 / 2^30 = 1/2 | Q31 |
 //!
-//! Vertices, cameras and lights keep a margin from the ends of the grid, so that origins that stand off a surface stay
-//! inside it.
+//! Vertices keep a margin from the ends of the grid, so that origins that stand off a surface are no farther from any
+//! vertex than the rest.
 
 use core::cmp::Ordering;
-use core::ops::Range;
 
 use super::boxes::BoxNode29;
 use super::width::{Reciprocal, Width};
@@ -29,8 +28,8 @@ pub struct Width29;
 /// How far rays start above a surface, in grid units.
 ///
 /// The resolved point is within 2^-8 of the true one along each axis, the unit normal within 2^-28, the rounding to the
-/// grid is 1/2: along the normal at most sqrt(3) (1/2 + 2^-8 + 2^-27) < 0.88 < 2 (1 - 2^-28).
-const STAND_OFF: i64 = 2;
+/// grid is 1/2: along the normal at most sqrt(3) (1/2 + 2^-8 + 2^-27) < 0.88 < 1 - 2^-28.
+const STAND_OFF: i64 = 1;
 
 /// `floor(2^63 / magnitude)`.
 #[derive(Clone, Copy, Debug)]
@@ -59,7 +58,7 @@ impl Width for Width29 {
     const NAME: &'static str = "exact29";
     const GRID_BITS: u32 = 29;
     const MARGIN: i32 = 8;
-    const ORIGINS: Range<i32> = 8..(1 << 29) - 8;
+    const SPAN: i32 = (1 << 29) - 8;
     const DIRECTION_BITS: u32 = 31;
     const NORMAL_BITS: u32 = 30;
     const MATERIALS_MAX: u32 = (1 << 26) - 1;

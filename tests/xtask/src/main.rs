@@ -1,26 +1,118 @@
-//! The task runner.
+//! The task runner. It depends on little, for it is the first thing that a new user waits for.
 
+mod checks;
 mod demo_scene;
+mod fuzz;
+mod steps;
+mod task;
+mod tool;
 
 use std::path::Path;
 use std::process::ExitCode;
 
+use steps::Step;
+use task::Task;
+
+const USAGE: &str = "\
+usage: cargo xtask VERB
+  test [--long]        runs every check, after installing what they need
+  fuzz [--seconds N]   fuzzes the blob and the importers, N seconds each (60)
+  bless                renews the goldens and shows which changed
+  demo-scene           writes scenes/demo anew";
+
+/// What can be asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Verb {
+    Test { long: bool },
+    Fuzz { seconds: u32 },
+    Bless,
+    DemoScene,
+}
+
+impl Verb {
+    fn parse(words: &[&str]) -> Option<Self> {
+        match *words {
+            ["test"] => Some(Self::Test { long: false }),
+            ["test", "--long"] => Some(Self::Test { long: true }),
+            ["fuzz"] => Some(Self::Fuzz { seconds: 60 }),
+            ["fuzz", "--seconds", seconds] => Some(Self::Fuzz { seconds: seconds.parse().ok()? }),
+            ["bless"] => Some(Self::Bless),
+            ["demo-scene"] => Some(Self::DemoScene),
+            _ => None,
+        }
+    }
+}
+
 fn main() -> ExitCode {
-    let verb = std::env::args().nth(1);
-    let outcome = match verb.as_deref() {
-        Some("demo-scene") => {
-            demo_scene::write(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/demo"))
-        }
-        _ => {
-            eprintln!("usage: cargo xtask demo-scene");
-            return ExitCode::from(2);
-        }
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let Some(verb) = Verb::parse(&words) else {
+        eprintln!("{USAGE}");
+        return ExitCode::from(2);
     };
-    match outcome {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let done = std::env::set_current_dir(&root)
+        .map_err(|error| format!("{}: {error}", root.display()))
+        .and_then(|()| perform(verb));
+    match done {
         Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("scenes/demo: {error}");
+        Err(message) => {
+            eprintln!("{message}");
             ExitCode::FAILURE
+        }
+    }
+}
+
+/// Does what was asked for, in the root of the workspace.
+fn perform(verb: Verb) -> Result<(), String> {
+    match verb {
+        Verb::Test { long } => {
+            fuzz::prepare().map_err(|error| format!("tests/fuzz: {error}"))?;
+            run(&checks::steps(long)).map(drop)
+        }
+        Verb::Fuzz { seconds } => {
+            fuzz::prepare().map_err(|error| format!("tests/fuzz: {error}"))?;
+            let skipped = run(&fuzz::steps(seconds, &[tool::NIGHTLY, tool::CARGO_FUZZ_INSTALLED]))?;
+            if skipped == 0 { Ok(()) } else { Err("nothing was fuzzed".into()) }
+        }
+        Verb::Bless => run(&[
+            Step::new(
+                "new goldens",
+                Task::new("cargo test -p tests --release --test goldens").with("INTRAY_BLESS", "1"),
+            ),
+            Step::new("goldens that changed", Task::new("git --no-pager diff --stat -- tests/goldens")),
+            Step::new("goldens by their state", Task::new("git status --short -- tests/goldens")),
+        ])
+        .map(drop),
+        Verb::DemoScene => {
+            demo_scene::write(Path::new("scenes/demo")).map_err(|error| format!("scenes/demo: {error}"))
+        }
+    }
+}
+
+/// Runs steps and sums up; how many were skipped.
+fn run(steps: &[Step]) -> Result<usize, String> {
+    let start = std::time::Instant::now();
+    let summary = steps::run(steps)
+        .map_err(|failure| format!("{}\nrepeat it by: {}", failure.reason, failure.command))?;
+    let skipped = summary.skipped.len();
+    let list = summary.skipped.join(", ");
+    let list = if skipped == 0 { String::new() } else { format!(": {list}") };
+    println!("{} steps passed in {:.0} s, {skipped} skipped{list}", summary.passed, start.elapsed().as_secs_f64());
+    Ok(skipped)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verbs_are_taken_whole_or_not_at_all() {
+        assert_eq!(Verb::parse(&["test"]), Some(Verb::Test { long: false }));
+        assert_eq!(Verb::parse(&["test", "--long"]), Some(Verb::Test { long: true }));
+        assert_eq!(Verb::parse(&["fuzz", "--seconds", "5"]), Some(Verb::Fuzz { seconds: 5 }));
+        for wrong in [&[][..], &["tset"], &["test", "--lnog"], &["fuzz", "--seconds", "-5"], &["bless", "now"]] {
+            assert_eq!(Verb::parse(wrong), None, "{wrong:?}");
         }
     }
 }

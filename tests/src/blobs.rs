@@ -1,0 +1,174 @@
+//! Blobs taken apart and put together, so that a test can damage one exactly where it means to.
+
+use core_rt::blob::{Header, MAGIC, PREFIX_SIZE, Prefix, TRAILER_SIZE, VERSION, crc32};
+use core_rt::colour::Rgb888;
+use core_rt::kernel::Kernel;
+use core_rt::profile::{Full, Need};
+use core_rt::record::{Light, Material, Record};
+use core_rt::render::{Tile, Workspace, render_tile};
+use core_rt::scene::{MAX_DEPTH, Scene};
+use core_rt::space::Space;
+use core_rt::stats::Counts;
+use host_tools::import::{Embedded, load_from};
+use host_tools::prepare::{Blob, Options, prepare};
+use host_tools::tree::TreeOptions;
+use zerocopy::{FromBytes, IntoBytes};
+
+/// What a blob holds, section by section. Nothing about it needs to be right.
+#[derive(Clone, Debug)]
+pub struct Draft<K: Kernel> {
+    /// Written as it stands: its counts need not be those of the sections.
+    pub header: Header,
+    /// Nodes in preorder.
+    pub nodes: Vec<K::Node>,
+    /// Triangles in the order of the leaves.
+    pub triangles: Vec<K::Triangle>,
+    /// The file's number of each triangle.
+    pub ids: Vec<u32>,
+    /// Three a triangle, or none.
+    pub normal_indices: Vec<u32>,
+    /// Unit normals.
+    pub normals: Vec<<K::Space as Space>::Normal>,
+    /// Materials.
+    pub materials: Vec<Material>,
+    /// Lights.
+    pub lights: Vec<Light>,
+}
+
+impl<K: Kernel> Draft<K> {
+    /// Takes a blob apart by its header's counts, without a look at what the records say. `None` where the header cannot
+    /// be decoded or the blob is too short for its counts.
+    #[must_use]
+    pub fn read(bytes: &[u8]) -> Option<Self> {
+        let (prefix, _) = Prefix::read_from_prefix(bytes).ok()?;
+        let mut rest = bytes.get(PREFIX_SIZE..bytes.len().checked_sub(TRAILER_SIZE)?)?;
+        let (header, _) = postcard::take_from_bytes(&take::<u8>(&mut rest, prefix.header_size)?).ok()?;
+        let Header { needs, counts, .. } = header;
+        Some(Self {
+            header,
+            nodes: take(&mut rest, counts.nodes)?,
+            triangles: take(&mut rest, counts.triangles)?,
+            ids: take_integers(&mut rest, counts.triangles, needs.has(Need::WideIds))?,
+            normal_indices: take_integers(&mut rest, counts.smooth.checked_mul(3)?, needs.has(Need::WideNormals))?,
+            normals: take(&mut rest, counts.normals)?,
+            materials: take(&mut rest, counts.materials)?,
+            lights: take(&mut rest, counts.lights)?,
+        })
+    }
+
+    /// The blob of what is here, with the prefix and the checksum that it should have.
+    #[must_use]
+    pub fn write(&self) -> Blob {
+        let header = postcard::to_stdvec(&self.header).expect("memory is all it takes");
+        let mut bytes = vec![0; PREFIX_SIZE];
+        bytes[12..16].copy_from_slice(&(header.len() as u32).to_le_bytes());
+        put(&mut bytes, &header);
+        put(&mut bytes, &self.nodes);
+        put(&mut bytes, &self.triangles);
+        put_integers(&mut bytes, &self.ids, self.header.needs.has(Need::WideIds));
+        put_integers(&mut bytes, &self.normal_indices, self.header.needs.has(Need::WideNormals));
+        put(&mut bytes, &self.normals);
+        put(&mut bytes, &self.materials);
+        put(&mut bytes, &self.lights);
+        bytes.extend([0; TRAILER_SIZE]);
+        repaired(&bytes, K::ID)
+    }
+}
+
+/// The next `count` records of a section and its padding.
+fn take<T: Record>(bytes: &mut &[u8], count: u32) -> Option<Vec<T>> {
+    let size = (count as usize).checked_mul(size_of::<T>())?;
+    let records = bytes.get(..size)?.chunks_exact(size_of::<T>());
+    let records = records.map(|record| T::read_from_bytes(record).ok()).collect::<Option<_>>()?;
+    *bytes = bytes.get(size.checked_next_multiple_of(8)?..)?;
+    Some(records)
+}
+
+fn take_integers(bytes: &mut &[u8], count: u32, wide: bool) -> Option<Vec<u32>> {
+    if wide {
+        return take(bytes, count);
+    }
+    Some(take::<u16>(bytes, count)?.into_iter().map(u32::from).collect())
+}
+
+fn put<T: Record>(bytes: &mut Vec<u8>, records: &[T]) {
+    bytes.extend_from_slice(records.as_bytes());
+    bytes.resize(bytes.len().next_multiple_of(8), 0);
+}
+
+fn put_integers(bytes: &mut Vec<u8>, values: &[u32], wide: bool) {
+    if wide {
+        put(bytes, values);
+    } else {
+        put(bytes, &values.iter().map(|&value| value as u16).collect::<Vec<_>>());
+    }
+}
+
+/// The bytes with the magic, the version, the size and the checksum of a blob for a kernel, so that a check gets to what
+/// stands behind these. Bytes that are too few for a prefix and a trailer are filled up with zeros.
+#[must_use]
+pub fn repaired(bytes: &[u8], kernel: u16) -> Blob {
+    let mut bytes = bytes.to_vec();
+    bytes.resize(bytes.len().max(PREFIX_SIZE + TRAILER_SIZE), 0);
+    let size = bytes.len();
+    bytes[..8].copy_from_slice(&MAGIC);
+    bytes[8..10].copy_from_slice(&VERSION.to_le_bytes());
+    bytes[10..12].copy_from_slice(&kernel.to_le_bytes());
+    bytes[16..20].copy_from_slice(&(size as u32).to_le_bytes());
+    let sum = crc32(&bytes[..size - 4]);
+    bytes[size - 4..].copy_from_slice(&sum.to_le_bytes());
+    Blob::from_bytes(&bytes)
+}
+
+/// Five triangles, a leaf for each, of two materials one of which emits; a light of each kind; ambient light. Smooth, or
+/// flat: of the smooth one's triangles the last is flat.
+///
+/// # Panics
+/// Where it cannot be prepared.
+#[must_use]
+pub fn sample<K: Kernel>(smooth: bool) -> Blob {
+    const VERTICES: &str = "mtllib s.mtl\nv 0 0 0\nv 4 0 0\nv 4 0 4\nv 0 0 4\nv 1 1 1\nv 3 1 2\nv 2 3 2\nv 2 1 3\n\
+                            vn 0 1 0\nvn 1 1 0\nvn 0 1 1\n";
+    const FLAT: &str = "usemtl floor\nf 1 4 3 2\nusemtl lamp\nf 5 7 6\nf 6 7 8\nf 8 7 5\n";
+    const SMOOTH: &str = "usemtl floor\nf 1//1 4//1 3//1 2//1\nusemtl lamp\nf 5//2 7//1 6//3\nf 6//3 7//1 8//2\nf 8 7 5\n";
+    let obj = [VERTICES, if smooth { SMOOTH } else { FLAT }].concat();
+    let files: [(&str, &[u8]); 3] = [
+        ("s.obj", obj.as_bytes()),
+        ("s.mtl", b"newmtl floor\nKd 0.5 0.6 0.7\nnewmtl lamp\nKd 0.9 0.2 0.1\nKe 0.25 0 0\n"),
+        (
+            "s.toml",
+            b"model = 's.obj'\n[camera]\nposition = [1, 3, 8]\nlook_at = [2, 1, 2]\n[[light]]\nposition = [3, 5, 3]\n\
+              [[light]]\nkind = 'directional'\ndirection = [-1, -3, -1]\ncolour = [0.3, 0.3, 0.2]\n\
+              [background]\ncolour = [0.1, 0.2, 0.4]\n[render]\nsize = [12, 9]\nambient = [0.1, 0.1, 0.1]\n",
+        ),
+    ];
+    let model = load_from(&Embedded(&files), "s.toml").expect("a good scene").model;
+    let tree = TreeOptions { leaf_max: 1, leaf_always: true, ..TreeOptions::default() };
+    prepare::<K>(&model, &Options { tree }).expect("it fits every kernel").blob
+}
+
+/// Renders the first tile of an accepted scene and the last, of at most 8x8 pixels, and returns the pixels of both.
+///
+/// # Panics
+/// Where the renderer does; where a ray looks at a node or a triangle twice.
+#[must_use]
+pub fn corners<K: Kernel>(scene: &Scene<'_, Full<K>>) -> Vec<Rgb888> {
+    let [width, height] = scene.header.size;
+    let side = |picture: u16| picture.min(8);
+    let first = Tile { x: 0, y: 0, width: side(width), height: side(height) };
+    let last = Tile { x: width - first.width, y: height - first.height, ..first };
+    let mut seen = Vec::new();
+    for tile in [first, last] {
+        let mut stack = heapless::Vec::<_, MAX_DEPTH>::new();
+        let (mut hits, mut pixels) = ([0; 64], [[0; 3]; 64]);
+        let mut workspace = Workspace { stack: &mut stack, hits: &mut hits, pixels: &mut pixels };
+        let mut counts = Counts::default();
+        seen.extend_from_slice(
+            render_tile(scene, tile, &mut workspace, &mut counts).expect("the workspace is the largest there is"),
+        );
+        let (nodes, triangles) = (scene.bvh.nodes.len() as u64, scene.bvh.triangles.len() as u64);
+        assert!(counts.box_tests <= 2 * nodes * counts.rays(), "{counts:?} of {nodes} nodes");
+        assert!(counts.triangle_tests <= triangles * counts.rays(), "{counts:?} of {triangles} triangles");
+    }
+    seen
+}

@@ -1,0 +1,214 @@
+//! Whether a blob says what the model says that it was made from, and keeps to the document's rules.
+
+use std::collections::HashSet;
+
+use glam::DVec3;
+use host_tools::model::{LightKind, Model, Transfer};
+
+use crate::reader::{Blob, Bounds, Radiance};
+
+type Checked = Result<(), String>;
+
+fn rule(holds: bool, what: &str) -> Checked {
+    if holds { Ok(()) } else { Err(what.into()) }
+}
+
+fn within(values: &[i64], (least, most): (i64, i64)) -> bool {
+    values.iter().all(|value| (least..=most).contains(value))
+}
+
+fn cross(a: [i64; 3], b: [i64; 3]) -> [i64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn minus(a: [i64; 3], b: [i64; 3]) -> [i64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// Checks everything.
+///
+/// # Errors
+/// What does not agree.
+pub fn agree(blob: &Blob, model: &Model) -> Checked {
+    header(blob, model)?;
+    camera(blob, model)?;
+    tree(blob)?;
+    triangles(blob, model)?;
+    normals(blob, model)?;
+    shading(blob, model)
+}
+
+fn place(blob: &Blob, point: DVec3) -> [i64; 3] {
+    let grid = (point - DVec3::from_array(blob.header.origin)) * blob.header.scale;
+    grid.to_array().map(|c| (c + 0.5).floor() as i64)
+}
+
+/// Light within what 16 bits of the strongest channel leave open.
+fn is_light(radiance: &Radiance, light: DVec3) -> bool {
+    let step = 2_f64.powi(radiance.exponent as i32 - 16);
+    let strongest = radiance.mantissa.into_iter().max().unwrap_or(0);
+    let close = radiance.mantissa.iter().zip(light.to_array()).all(|(&m, c)| (f64::from(m) * step - c).abs() <= step / 2.0);
+    let least = strongest >= 1 << 15 || radiance.exponent == -15 || (strongest == 0 && radiance.exponent == 0);
+    close && least && (-15..=15).contains(&radiance.exponent)
+}
+
+fn header(blob: &Blob, model: &Model) -> Checked {
+    let header = &blob.header;
+    let any_kind = |point: bool| model.lights.iter().any(|l| matches!(l.kind, LightKind::Point(_)) == point);
+    let smooth = model.triangles.iter().any(|t| t.normals.is_some());
+    let linear = model.render.transfer == Transfer::Linear;
+    let needs = [
+        any_kind(true),
+        any_kind(false),
+        !model.lights.is_empty(),
+        smooth,
+        model.triangles.iter().any(|t| model.materials[t.material as usize].emission != DVec3::ZERO),
+        model.render.ambient != DVec3::ZERO,
+        !linear,
+        linear,
+        model.triangles.len() > 65_536,
+        blob.normals.len() >= 65_536,
+    ];
+    let needs = needs.iter().rev().fold(0, |bits, &need| bits << 1 | u32::from(need));
+    rule(header.needs == needs, "needs")?;
+    rule(header.size == model.render.size.map(u64::from), "size")?;
+    rule(header.transfer == u64::from(linear), "transfer")?;
+    rule(header.file_triangles == model.triangles.len() as u64, "triangles in the file")?;
+    rule(blob.corners.len() == if smooth { blob.triangles.len() } else { 0 }, "smooth")?;
+    rule(is_light(&header.background, model.background), "background")?;
+    rule(is_light(&header.ambient, model.render.ambient), "ambient")
+}
+
+fn camera(blob: &Blob, model: &Model) -> Checked {
+    let (header, camera) = (&blob.header, &model.camera);
+    rule(header.eye == place(blob, camera.position), "eye")?;
+    rule(within(&header.eye, blob.kernel.origins), "range of the eye")?;
+    rule(header.fraction_bits <= blob.kernel.fraction_bits_most, "fraction bits")?;
+    let forward = (camera.look_at - camera.position).normalize();
+    let right = forward.cross(camera.up).normalize();
+    let up = right.cross(forward);
+    let [width, height] = header.size.map(|side| side as f64);
+    let half = (1_i64 << header.fraction_bits) >> 1;
+    let bound = 1_i64 << (blob.kernel.direction_bits + u32::from(header.fraction_bits));
+    for (x, y) in [(0, 0), (header.size[0] - 1, 0), (0, header.size[1] - 1), (header.size[0] - 1, header.size[1] - 1)] {
+        let mut direction = [0; 3];
+        for axis in 0..3 {
+            let sum = header.first[axis] + x as i64 * header.right[axis] + y as i64 * header.down[axis];
+            rule(sum.abs() + half < bound, "range of directions")?;
+            direction[axis] = (sum + half) >> header.fraction_bits;
+        }
+        // Pixel centres on a picture at distance 1.
+        let extent = (camera.fov_y / 2.0).tan();
+        let meant = forward
+            + right * (extent / height * (2.0 * x as f64 + 1.0 - width))
+            + up * (extent / height * (height - 2.0 * y as f64 - 1.0));
+        let off = DVec3::from_array(direction.map(|c| c as f64)).normalize().distance(meant.normalize());
+        // A unit on each axis, of a direction of at least 2^(bits - 1).
+        rule(off < 4.0 / (1_i64 << blob.kernel.direction_bits) as f64, "directions")?;
+    }
+    Ok(())
+}
+
+fn tree(blob: &Blob) -> Checked {
+    let mut next = (0, 0);
+    let levels = subtree(blob, blob.header.root, None, &mut next)?;
+    rule(next == (blob.nodes.len(), blob.triangles.len()), "nodes or triangles are left over")?;
+    rule(levels == u32::from(blob.header.depth) && levels <= 64, "depth")
+}
+
+/// Checks a subtree against the next free node and triangle; its levels.
+fn subtree(blob: &Blob, word: u32, holder: Option<Bounds>, next: &mut (usize, usize)) -> Result<u32, String> {
+    let inside = |low: [i64; 3], high: [i64; 3]| {
+        holder.is_none_or(|b| (0..3).all(|axis| b.low[axis] <= low[axis] && high[axis] <= b.high[axis]))
+    };
+    if word >> 31 == 1 {
+        let (count, first) = ((word >> 25 & 63) as usize + 1, (word & 0x1ff_ffff) as usize);
+        rule(first == next.1, "order of triangles")?;
+        next.1 += count;
+        let run = blob.triangles.get(first..first + count).ok_or("a leaf beyond the triangles")?;
+        rule(run.iter().flat_map(|t| t.vertices).all(|v| inside(v, v)), "a vertex outside its leaf's box")?;
+        return Ok(0);
+    }
+    rule(word as usize == next.0, "order of nodes")?;
+    next.0 += 1;
+    let node = *blob.nodes.get(word as usize).ok_or("a reference beyond the nodes")?;
+    let mut levels = 0;
+    for (bounds, child) in node.boxes.into_iter().zip(node.children) {
+        rule(inside(bounds.low, bounds.high), "a box outside its parent's")?;
+        levels = levels.max(1 + subtree(blob, child, Some(bounds), next)?);
+    }
+    Ok(levels)
+}
+
+fn triangles(blob: &Blob, model: &Model) -> Checked {
+    let kernel = blob.kernel;
+    for (triangle, &id) in blob.triangles.iter().zip(&blob.ids) {
+        let source = model.triangles.get(id as usize).ok_or("an id beyond the file")?;
+        rule(triangle.vertices == source.vertices.map(|v| place(blob, model.positions[v as usize])), "vertices")?;
+        rule(within(triangle.vertices.as_flattened(), kernel.vertices), "range of vertices")?;
+        let [e1, e2] = triangle.edges;
+        let magnitudes = [e1, e2, minus(e2, e1)].into_iter().flatten().map(i64::unsigned_abs);
+        let b = (0..63).find(|&b| magnitudes.clone().all(|m| m < 1 << b)).unwrap_or(63);
+        rule(triangle.shift == b, "shift")?;
+        let normal = cross(e1, e2);
+        rule(normal != [0; 3], "a triangle without area")?;
+        let k = (2 * b).saturating_sub(kernel.normal_bits);
+        rule(triangle.n == normal.map(|c| c >> k), "n")?;
+        rule(triangle.material <= kernel.material_most, "range of materials")?;
+        let material = blob.materials.get(triangle.material as usize).ok_or("a material that is not there")?;
+        let meant = &model.materials[source.material as usize];
+        let albedo = meant.diffuse.to_array().map(|c| (c * 65_535.0 + 0.5).floor() as u16);
+        rule(material.albedo == albedo && is_light(&material.emission, meant.emission), "material")?;
+    }
+    let present: HashSet<u32> = blob.ids.iter().copied().collect();
+    rule(present.len() == blob.ids.len(), "ids are not distinct")?;
+    for (id, triangle) in (0..).zip(&model.triangles) {
+        let [a, b, c] = triangle.vertices.map(|v| place(blob, model.positions[v as usize]));
+        let has_area = cross(minus(b, a), minus(c, a)) != [0; 3];
+        rule(present.contains(&id) == has_area, "triangles with area are there, and no others")?;
+    }
+    Ok(())
+}
+
+fn normals(blob: &Blob, model: &Model) -> Checked {
+    let unit = (1_i64 << blob.kernel.unit_bits) as f64;
+    let as_meant = |record: &[i64; 3], normal: DVec3| {
+        // Rounded once or twice: to Q30, then to the kernel's format.
+        record.iter().zip(normal.to_array()).all(|(&c, meant)| (c as f64 - meant * unit).abs() <= 0.5 + 2_f64.powi(-15))
+    };
+    for (corners, &id) in blob.corners.iter().zip(&blob.ids) {
+        let (found, meant) = (corners, model.triangles[id as usize].normals);
+        rule(found.is_some() == meant.is_some(), "which triangles are flat")?;
+        for (index, normal) in found.iter().flatten().zip(meant.iter().flatten()) {
+            let record = blob.normals.get(*index as usize).ok_or("a normal that is not there")?;
+            rule(as_meant(record, model.normals[*normal as usize]), "normals")?;
+        }
+    }
+    rule(blob.normals.iter().all(|n| is_unit(n, unit)), "length of normals")
+}
+
+fn is_unit(vector: &[i64; 3], unit: f64) -> bool {
+    let square: f64 = vector.iter().map(|&c| (c as f64 / unit).powi(2)).sum();
+    (square - 1.0).abs() < 2_f64.powi(-7)
+}
+
+fn shading(blob: &Blob, model: &Model) -> Checked {
+    rule(blob.materials.iter().all(|m| m.reserved == 0), "reserved words")?;
+    rule(blob.lights.len() == model.lights.len(), "number of lights")?;
+    for (light, meant) in blob.lights.iter().zip(&model.lights) {
+        rule(is_light(&light.radiance, meant.radiance), "strength of a light")?;
+        match meant.kind {
+            LightKind::Point(position) => {
+                rule(light.kind == 0 && light.place == place(blob, position), "place of a light")?;
+                rule(within(&light.place, blob.kernel.origins), "range of a light")?;
+            }
+            LightKind::Directional(direction) => {
+                let unit = 2_f64.powi(30);
+                let towards = DVec3::from_array(light.place.map(|c| c as f64 / unit));
+                let close = towards.distance(-direction.normalize()) < 2_f64.powi(-29);
+                rule(light.kind == 1 && close && is_unit(&light.place, unit), "direction of a light")?;
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,164 @@
+//! Keeps `docs/BLOB.md` honest: a reader made from the document alone reads what the host prepares, and finds in it
+//! the scenes that went in; and each thing that the document says is refused is refused as it says.
+
+mod agree;
+mod reader;
+mod refusals;
+
+use agree::agree;
+use glam::DVec3;
+use host_tools::engine;
+use host_tools::import::{Embedded, load_from};
+use host_tools::model::{Light, LightKind, Model, Transfer, Triangle};
+use host_tools::prepare::{Options, Prepared};
+use reader::{Blob, crc32, read};
+
+const KERNELS: [&str; 2] = ["exact14", "exact29"];
+
+/// The built-in scene: lit by a point, partly smooth, with a lamp.
+fn built_in() -> Model {
+    load_from(&Embedded(host_tools::builtin::FILES), "scene.toml").unwrap().model
+}
+
+/// The same, flat, in linear light, under a sun.
+fn flat() -> Model {
+    let mut model = built_in();
+    model.triangles.iter_mut().for_each(|triangle| triangle.normals = None);
+    model.render.transfer = Transfer::Linear;
+    model.render.size = [33, 57];
+    model.background = DVec3::new(0.0, 1e-6, 40_000.0);
+    let kind = LightKind::Directional(DVec3::new(0.3, -2.0, -0.4));
+    model.lights.push(Light { kind, radiance: DVec3::new(3.0, 0.0, 1e-3) });
+    model
+}
+
+/// A square of 2 n^2 triangles over (n + 1)^2 positions, as many normals, and one triangle without area.
+fn carpet(n: u32) -> Model {
+    let mut model = built_in();
+    let side = n + 1;
+    let points = || (0..side * side).map(|i| (f64::from(i % side), f64::from(i / side)));
+    model.positions = points().map(|(x, z)| DVec3::new(x, (x * z) % 7.0, z)).collect();
+    model.normals = points().map(|(x, z)| DVec3::new(x - 9.0, 99.0, z).normalize()).collect();
+    let triangle = |vertices| Triangle { vertices, normals: Some(vertices), material: 0 };
+    model.triangles = (0..n * n)
+        .map(|i| i / n * side + i % n)
+        .flat_map(|i| [triangle([i, i + side, i + 1]), triangle([i + 1, i + side, i + side + 1])])
+        .chain([triangle([0, 0, 1])])
+        .collect();
+    model
+}
+
+fn prepare(model: &Model, kernel: &str) -> Prepared {
+    engine::by_name(kernel).unwrap().prepare(model, &Options::default()).unwrap()
+}
+
+fn prepared(model: &Model, kernel: &str) -> Blob {
+    read(prepare(model, kernel).blob.bytes())
+}
+
+#[test]
+fn what_goes_in_is_read_by_the_document() {
+    for kernel in KERNELS {
+        for model in [built_in(), flat()] {
+            let Prepared { blob, grid, degenerates } = prepare(&model, kernel);
+            let found = read(blob.bytes());
+            assert_eq!(agree(&found, &model), Ok(()), "{kernel}");
+            assert_eq!((found.header.origin, found.header.scale), (grid.origin.to_array(), grid.scale));
+            assert_eq!(found.triangles.len() + degenerates.total() as usize, model.triangles.len());
+        }
+        let (mixed, flat) = (prepared(&built_in(), kernel), prepared(&flat(), kernel));
+        // What the comparisons rely on: both kinds of triangles, trees of some depth, widths that are narrow.
+        assert!(mixed.corners.contains(&None) && mixed.corners.iter().any(Option::is_some));
+        assert!(mixed.header.depth > 5 && mixed.header.needs >> 8 == 0);
+        assert!(flat.corners.is_empty() && flat.normals.is_empty());
+    }
+}
+
+#[test]
+fn widths_change_where_the_document_says() {
+    for kernel in KERNELS {
+        // 2 * 181^2 + 1 = 65523 triangles, then 2 * 256^2 + 1; 255^2 = 65025 normals, then 256^2 = 65536.
+        for (n, wide_ids, wide_normals) in [(180, 0, 0), (181, 1, 0), (254, 1, 0), (255, 1, 1)] {
+            let model = carpet(n);
+            let found = prepared(&model, kernel);
+            assert_eq!(agree(&found, &model), Ok(()), "{kernel} {n}");
+            assert_eq!((found.header.needs >> 8 & 1, found.header.needs >> 9 & 1), (wide_ids, wide_normals), "{n}");
+        }
+    }
+}
+
+#[test]
+fn a_single_leaf_has_no_nodes() {
+    for kernel in KERNELS {
+        let mut model = carpet(1);
+        model.triangles.truncate(1);
+        model.lights.clear();
+        let found = prepared(&model, kernel);
+        assert_eq!(agree(&found, &model), Ok(()), "{kernel}");
+        assert_eq!((found.header.root, found.header.depth, found.nodes.len()), (1 << 31, 0, 0));
+    }
+}
+
+#[test]
+fn another_scene_is_told_from_the_blobs() {
+    for kernel in KERNELS {
+        let (model, blob) = (flat(), prepared(&flat(), kernel));
+        let fault = |change: &dyn Fn(&mut Model)| {
+            let mut other = model.clone();
+            change(&mut other);
+            agree(&blob, &other).unwrap_err()
+        };
+        assert_eq!(fault(&|m| m.lights.truncate(1)), "needs");
+        assert_eq!(fault(&|m| m.render.size[0] += 1), "size");
+        assert_eq!(fault(&|m| m.background.z *= 1.0001), "background");
+        assert_eq!(fault(&|m| m.render.ambient.x *= 1.0001), "ambient");
+        assert_eq!(fault(&|m| m.camera.position.x += 0.01), "eye");
+        assert_eq!(fault(&|m| m.camera.fov_y *= 1.01), "directions");
+        assert_eq!(fault(&|m| m.positions[9].y += 0.01), "vertices");
+        assert_eq!(fault(&|m| m.triangles[0].vertices.rotate_left(1)), "vertices");
+        assert_eq!(fault(&|m| m.materials.iter_mut().for_each(|x| x.diffuse.y *= 0.999)), "material");
+        assert_eq!(fault(&|m| m.lights[0].radiance.x *= 1.001), "strength of a light");
+        assert_eq!(fault(&|m| m.lights[1].kind = LightKind::Directional(DVec3::X)), "direction of a light");
+        assert_eq!(fault(&|m| m.lights.swap(0, 1)), "strength of a light");
+
+        let (smooth, blob) = (built_in(), prepared(&built_in(), kernel));
+        let mut other = smooth.clone();
+        other.normals.iter_mut().for_each(|normal| *normal = DVec3::new(normal.y, normal.x, normal.z));
+        assert_eq!(agree(&blob, &other).unwrap_err(), "normals");
+    }
+}
+
+#[test]
+fn a_blob_that_breaks_a_rule_is_told_from_one_that_does_not() {
+    for kernel in KERNELS {
+        let (model, blob) = (built_in(), prepared(&built_in(), kernel));
+        let fault = |change: &dyn Fn(&mut Blob)| {
+            let mut other = blob.clone();
+            change(&mut other);
+            agree(&other, &model).unwrap_err()
+        };
+        assert_eq!(fault(&|b| b.nodes[0].children.swap(0, 1)), "order of nodes");
+        assert_eq!(fault(&|b| b.nodes[3].boxes[1].high[2] = b.nodes[3].boxes[1].low[2] - 1), {
+            let leaf = blob.nodes[3].children[1] >> 31 == 1;
+            if leaf { "a vertex outside its leaf's box" } else { "a box outside its parent's" }
+        });
+        assert_eq!(fault(&|b| b.header.depth += 1), "depth");
+        assert_eq!(fault(&|b| b.triangles[5].shift += 1), "shift");
+        assert_eq!(fault(&|b| b.triangles[5].n[0] += 1), "n");
+        assert_eq!(fault(&|b| b.ids[1] = b.ids[0]), "vertices");
+        assert_eq!(fault(&|b| b.corners[7] = b.corners[7].xor(Some([0; 3]))), "which triangles are flat");
+        assert_eq!(fault(&|b| b.normals[0][0] += 4), "normals");
+    }
+}
+
+#[test]
+fn the_checksum_is_the_usual_one_and_sees_every_bit() {
+    assert_eq!(crc32(b"123456789"), 0xcbf4_3926);
+    let blob = prepare(&built_in(), "exact14").blob;
+    let covered = &blob.bytes()[..400];
+    for bit in 0..8 * covered.len() {
+        let mut other = covered.to_vec();
+        other[bit / 8] ^= 1 << (bit % 8);
+        assert_ne!(crc32(&other), crc32(covered));
+    }
+}

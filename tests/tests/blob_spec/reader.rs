@@ -1,0 +1,292 @@
+//! A reader of blobs, made from `docs/BLOB.md` alone: plain arithmetic on bytes, and nothing of core-rt.
+
+use std::ops::Range;
+
+/// The document's table of kernels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Kernel {
+    pub id: u16,
+    /// Of a plane and of a triangle's field, bytes.
+    pub short: usize,
+    pub vertices: (i64, i64),
+    pub origins: (i64, i64),
+    pub direction_bits: u32,
+    pub fraction_bits_most: u8,
+    pub normal_bits: u32,
+    pub shift_bits: u32,
+    pub material_most: u32,
+    /// Of a unit normal.
+    pub unit_bits: u32,
+}
+
+pub const EXACT14: Kernel = Kernel {
+    id: 14,
+    short: 2,
+    vertices: (0, 16_383),
+    origins: (-16_384, 32_767),
+    direction_bits: 13,
+    fraction_bits_most: 17,
+    normal_bits: 15,
+    shift_bits: 4,
+    material_most: 4095,
+    unit_bits: 14,
+};
+
+pub const EXACT29: Kernel = Kernel {
+    id: 29,
+    short: 4,
+    vertices: (8, (1 << 29) - 9),
+    origins: (8, (1 << 29) - 9),
+    direction_bits: 31,
+    fraction_bits_most: 30,
+    normal_bits: 30,
+    shift_bits: 5,
+    material_most: 67_108_863,
+    unit_bits: 30,
+};
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Radiance {
+    pub mantissa: [u16; 3],
+    pub exponent: i64,
+}
+
+#[derive(Clone, Debug)]
+pub struct Header {
+    pub needs: u32,
+    pub size: [u64; 2],
+    pub eye: [i64; 3],
+    pub first: [i64; 3],
+    pub right: [i64; 3],
+    pub down: [i64; 3],
+    pub fraction_bits: u8,
+    pub background: Radiance,
+    pub ambient: Radiance,
+    pub transfer: u64,
+    pub root: u32,
+    pub depth: u8,
+    /// Nodes, triangles, smooth, normals, materials, lights.
+    pub counts: [usize; 6],
+    pub file_triangles: u64,
+    pub origin: [f64; 3],
+    pub scale: f64,
+}
+
+/// Least and greatest coordinates, both inside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bounds {
+    pub low: [i64; 3],
+    pub high: [i64; 3],
+}
+
+#[derive(Clone, Copy, Debug)]
+pub struct Node {
+    pub boxes: [Bounds; 2],
+    pub children: [u32; 2],
+}
+
+#[derive(Clone, Copy, Debug)]
+pub struct Triangle {
+    pub vertices: [[i64; 3]; 3],
+    pub edges: [[i64; 3]; 2],
+    pub n: [i64; 3],
+    pub shift: u32,
+    pub material: u32,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub struct Material {
+    pub emission: Radiance,
+    pub albedo: [u16; 3],
+    pub reserved: u16,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub struct Light {
+    pub kind: u32,
+    pub place: [i64; 3],
+    pub radiance: Radiance,
+}
+
+/// Everything that a blob says, and where its parts lie.
+#[derive(Clone, Debug)]
+pub struct Blob {
+    pub kernel: Kernel,
+    pub header: Header,
+    pub nodes: Vec<Node>,
+    pub triangles: Vec<Triangle>,
+    pub ids: Vec<u32>,
+    /// `None` for a flat triangle; empty for a flat scene.
+    pub corners: Vec<Option<[u32; 3]>>,
+    pub normals: Vec<[i64; 3]>,
+    pub materials: Vec<Material>,
+    pub lights: Vec<Light>,
+    /// Header, nodes, triangles, ids, normal indices, normals, materials, lights: without padding.
+    pub parts: [Range<usize>; 8],
+}
+
+/// The document's CRC-32, bit by bit.
+pub fn crc32(bytes: &[u8]) -> u32 {
+    let mut crc = u32::MAX;
+    for &byte in bytes {
+        crc ^= u32::from(byte);
+        for _ in 0..8 {
+            crc = if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 };
+        }
+    }
+    !crc
+}
+
+struct Cursor<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl Cursor<'_> {
+    fn unsigned(&mut self, size: usize) -> u64 {
+        let bytes = &self.bytes[self.at..self.at + size];
+        self.at += size;
+        bytes.iter().rev().fold(0, |value, &byte| value << 8 | u64::from(byte))
+    }
+
+    fn signed(&mut self, size: usize) -> i64 {
+        let unused = 64 - 8 * size as u32;
+        (self.unsigned(size) << unused) as i64 >> unused
+    }
+
+    fn varint(&mut self, bits: u32) -> u64 {
+        let mut value = 0_u128;
+        for group in 0..bits.div_ceil(7) {
+            let byte = self.unsigned(1) as u128;
+            value |= (byte & 127) << (7 * group);
+            if byte < 128 {
+                assert!(value >> bits == 0, "a varint beyond its type");
+                return value as u64;
+            }
+        }
+        panic!("a varint without end");
+    }
+
+    fn zigzag(&mut self, bits: u32) -> i64 {
+        let value = self.varint(bits);
+        (value >> 1) as i64 ^ -((value & 1) as i64)
+    }
+
+    fn three<T>(&mut self, mut read: impl FnMut(&mut Self) -> T) -> [T; 3] {
+        [read(self), read(self), read(self)]
+    }
+
+    fn pad(&mut self) {
+        while self.at % 8 != 0 {
+            assert_eq!(self.unsigned(1), 0, "padding");
+        }
+    }
+
+    /// The records of a section, and where it lies.
+    fn section<T>(&mut self, count: usize, mut read: impl FnMut(&mut Self) -> T) -> (Vec<T>, Range<usize>) {
+        let start = self.at;
+        let records = (0..count).map(|_| read(self)).collect();
+        let end = self.at;
+        self.pad();
+        (records, start..end)
+    }
+
+    fn radiance(&mut self) -> Radiance {
+        Radiance { mantissa: self.three(|c| c.unsigned(2) as u16), exponent: self.signed(2) }
+    }
+
+    fn encoded_radiance(&mut self) -> Radiance {
+        Radiance { mantissa: self.three(|c| c.varint(16) as u16), exponent: self.zigzag(16) }
+    }
+
+    fn header(&mut self) -> Header {
+        Header {
+            needs: self.varint(32) as u32,
+            size: [self.varint(16), self.varint(16)],
+            eye: self.three(|c| c.zigzag(32)),
+            first: self.three(|c| c.zigzag(64)),
+            right: self.three(|c| c.zigzag(64)),
+            down: self.three(|c| c.zigzag(64)),
+            fraction_bits: self.unsigned(1) as u8,
+            background: self.encoded_radiance(),
+            ambient: self.encoded_radiance(),
+            transfer: self.varint(32),
+            root: self.varint(32) as u32,
+            depth: self.unsigned(1) as u8,
+            counts: [(); 6].map(|()| self.varint(32) as usize),
+            file_triangles: self.varint(32),
+            origin: self.three(|c| f64::from_bits(c.varint(64))),
+            scale: f64::from_bits(self.varint(64)),
+        }
+    }
+
+    fn node(&mut self, kernel: Kernel) -> Node {
+        let mut bounds = || Bounds {
+            low: self.three(|c| c.unsigned(kernel.short) as i64),
+            high: self.three(|c| c.unsigned(kernel.short) as i64 - 1),
+        };
+        Node { boxes: [bounds(), bounds()], children: [self.unsigned(4) as u32, self.unsigned(4) as u32] }
+    }
+
+    fn triangle(&mut self, kernel: Kernel) -> Triangle {
+        let mut row = || self.three(|c| c.signed(kernel.short));
+        let [v0, e1, e2, n] = [row(), row(), row(), row()];
+        let meta = self.unsigned(kernel.short) as u32;
+        let plus = |edge: [i64; 3]| [v0[0] + edge[0], v0[1] + edge[1], v0[2] + edge[2]];
+        Triangle {
+            vertices: [v0, plus(e1), plus(e2)],
+            edges: [e1, e2],
+            n,
+            shift: meta & ((1 << kernel.shift_bits) - 1),
+            material: meta >> kernel.shift_bits,
+        }
+    }
+}
+
+/// Reads a whole blob. Panics where the document is not kept to: this is a test's reader.
+pub fn read(bytes: &[u8]) -> Blob {
+    assert_eq!(bytes[..8], [0x89, 0x69, 0x6e, 0x74, 0x72, 0x61, 0x79, 0x0a], "magic");
+    let mut cursor = Cursor { bytes, at: 8 };
+    assert_eq!(cursor.unsigned(2), 1, "version");
+    let kernel = match cursor.unsigned(2) {
+        14 => EXACT14,
+        29 => EXACT29,
+        other => panic!("kernel {other}"),
+    };
+    let header_size = cursor.unsigned(4) as usize;
+    assert_eq!(cursor.unsigned(4) as usize, bytes.len(), "total size");
+    assert_eq!(cursor.unsigned(4), 0, "reserved");
+    let header = cursor.header();
+    let header_part = 24..cursor.at;
+    assert_eq!(header_part.len(), header_size, "header size");
+    cursor.pad();
+
+    let [node_count, triangle_count, smooth, normal_count, material_count, light_count] = header.counts;
+    let wide = |bit: u32| if header.needs >> bit & 1 == 1 { 4 } else { 2 };
+    let (nodes, node_part) = cursor.section(node_count, |c| c.node(kernel));
+    let (triangles, triangle_part) = cursor.section(triangle_count, |c| c.triangle(kernel));
+    let (ids, id_part) = cursor.section(triangle_count, |c| c.unsigned(wide(8)) as u32);
+    let flat = if wide(9) == 4 { u32::MAX } else { u16::MAX.into() };
+    let (corners, corner_part) = cursor.section(smooth, |c| {
+        let indices = c.three(|c| c.unsigned(wide(9)) as u32);
+        (indices != [flat; 3]).then_some(indices)
+    });
+    let (normals, normal_part) = cursor.section(normal_count, |c| c.three(|c| c.signed(kernel.short)));
+    let (materials, material_part) = cursor.section(material_count, |c| Material {
+        emission: c.radiance(),
+        albedo: c.three(|c| c.unsigned(2) as u16),
+        reserved: c.unsigned(2) as u16,
+    });
+    let (lights, light_part) = cursor.section(light_count, |c| Light {
+        kind: c.unsigned(4) as u32,
+        place: c.three(|c| c.signed(4)),
+        radiance: c.radiance(),
+    });
+    assert_eq!(cursor.unsigned(4), 0, "before the checksum");
+    let computed = crc32(&bytes[..cursor.at]);
+    assert_eq!(cursor.unsigned(4), u64::from(computed), "checksum");
+    assert_eq!(cursor.at, bytes.len(), "nothing follows");
+    let parts =
+        [header_part, node_part, triangle_part, id_part, corner_part, normal_part, material_part, light_part];
+    Blob { kernel, header, nodes, triangles, ids, corners, normals, materials, lights, parts }
+}

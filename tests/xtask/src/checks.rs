@@ -1,0 +1,58 @@
+//! What `cargo xtask test` runs, the quickest first.
+//!
+//! Everything is tested with overflow checks. Unit tests run as debug builds; conformance needs millions of rays, so the
+//! package `tests` runs under the profile `checked`: optimised, with the checks kept. The goldens are bit-exact files, so
+//! that comparing with them in debug and release too shows that no result depends on the optimisation level.
+
+use crate::fuzz;
+use crate::steps::Step;
+use crate::task::Task;
+use crate::tool::{CARGO_FUZZ, CLIPPY, IMAGEMAGICK, NIGHTLY, RISCV32IMAC, RUSTFMT, THUMBV6M};
+
+/// Seconds of fuzzing a target.
+const FUZZ_SECONDS: u32 = 20;
+
+/// All checks. `long` makes the tests that draw random input draw ten times as much.
+pub(crate) fn steps(long: bool) -> Vec<Step> {
+    let test = |line: &str| {
+        let task = Task::new(line);
+        if long { task.with("INTRAY_LONG", "1") } else { task }
+    };
+    let mut steps = vec![
+        Step::new("formatting", Task::new("cargo fmt --all --check")).needing(&[RUSTFMT]),
+        Step::new("lints", Task::new("cargo clippy --workspace --all-targets -- -D warnings")).needing(&[CLIPPY]),
+        Step::new(
+            "documentation",
+            Task::new("cargo doc --no-deps -p core-rt -p host-tools").with("RUSTDOCFLAGS", "-D warnings"),
+        ),
+        Step::new(
+            "the core for the chips",
+            Task::new(
+                "cargo build -p core-rt --release --target thumbv6m-none-eabi --target riscv32imac-unknown-none-elf",
+            ),
+        )
+        .needing(&[THUMBV6M, RISCV32IMAC]),
+        Step::new("unit tests, debug", test("cargo test -p core-rt -p host-tools -p xtask")),
+        Step::new("goldens, debug", Task::new("cargo test -p tests --test goldens")),
+        Step::new("ImageMagick's counts", Task::new("cargo test -p tests --profile checked --test imagemagick"))
+            .needing(&[IMAGEMAGICK]),
+        Step::new("all of tests, optimised and overflow-checked", test("cargo test -p tests --profile checked")),
+        Step::new("goldens, release", Task::new("cargo test -p tests --release --test goldens")),
+    ];
+    steps.extend(fuzz::steps(FUZZ_SECONDS, &[NIGHTLY, CARGO_FUZZ]));
+    steps
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_long_run_is_longer_in_its_tests_only() {
+        let long = |steps: Vec<Step>| {
+            steps.iter().map(|step| step.task.to_string()).filter(|line| line.contains("INTRAY_LONG")).count()
+        };
+        assert_eq!(long(steps(false)), 0);
+        assert_eq!(long(steps(true)), 2);
+    }
+}
