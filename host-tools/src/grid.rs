@@ -3,11 +3,11 @@
 //! All axes share one scale. It is the largest for which the geometry fits the kernel's grid, and every camera and point
 //! light is within the kernel's span of all of it.
 
-use core_rt::kernel::{Kernel, Vertices};
+use core_rt::kernel::{Bounds, Kernel, Vertices};
 use glam::DVec3;
 use thiserror::Error;
 
-use crate::model::{LightKind, Model};
+use crate::model::{LightKind, Model, Triangle};
 
 /// Why a model has no grid.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
@@ -15,6 +15,12 @@ pub enum GridError {
     /// All points are one.
     #[error("the scene has no extent: all its triangles lie in one point")]
     NoExtent,
+    /// The steps of f64 are coarser than the grid's.
+    #[error(
+        "the scene is too small for where it is: its points are closer together than 64-bit numbers can tell; bring it \
+         closer to (0, 0, 0), and the camera and the lights to it"
+    )]
+    TooFar,
 }
 
 /// `grid = round((scene - origin) * scale)`.
@@ -30,7 +36,7 @@ impl Grid {
     /// The finest grid of a kernel for a model.
     ///
     /// # Errors
-    /// Where the geometry has no extent.
+    /// Where the geometry has no extent, or so little for its distance from zero that f64 cannot place it.
     ///
     /// With k = origin * scale, an axis asks for `g s - k` of the geometry in `[m, M]`, and for `|o s - g s|` of every
     /// origin at most the kernel's span.
@@ -61,7 +67,13 @@ impl Grid {
         }
         // The geometry begins where the grid does.
         let axis_origin = |axis: usize| geometry.low[axis] - grid_low / scale;
-        Ok(Self { origin: DVec3::new(axis_origin(0), axis_origin(1), axis_origin(2)), scale })
+        let grid = Self { origin: DVec3::new(axis_origin(0), axis_origin(1), axis_origin(2)), scale };
+        // Placing rounds, but keeps order: if the ends are in range, all is.
+        let whole = Bounds { low: [K::MARGIN; 3], high: [(1 << K::GRID_BITS) - 1 - K::MARGIN; 3] };
+        let placed = Bounds { low: grid.place(geometry.low), high: grid.place(geometry.high) };
+        let spanned = |origin| placed.spanned_from(grid.place(origin), K::SPAN);
+        let fits = whole.contains(&placed) && spanned(origins.low) && spanned(origins.high);
+        if fits { Ok(grid) } else { Err(GridError::TooFar) }
     }
 
     /// The nearest grid point, halves up.
@@ -70,11 +82,30 @@ impl Grid {
         ((point - self.origin) * self.scale).to_array().map(|c| (c + 0.5).floor() as i32)
     }
 
-    /// The corners of every triangle on the grid, in file order.
+    /// The model on the grid.
     #[must_use]
-    pub fn triangles(&self, model: &Model) -> Vec<Vertices> {
-        let placed: Vec<[i32; 3]> = model.positions.iter().map(|&p| self.place(p)).collect();
-        model.triangles.iter().map(|t| t.vertices.map(|v| placed[v as usize])).collect()
+    pub fn snap<'m>(&self, model: &'m Model) -> Snapped<'m> {
+        Snapped { triangles: &model.triangles, positions: model.positions.iter().map(|&p| self.place(p)).collect() }
+    }
+}
+
+/// A model's vertices on a grid, shared as in the model.
+#[derive(Clone, Debug)]
+pub struct Snapped<'m> {
+    triangles: &'m [Triangle],
+    positions: Vec<[i32; 3]>,
+}
+
+impl Snapped<'_> {
+    /// The corners of a triangle of the model.
+    #[must_use]
+    pub fn corners(&self, id: u32) -> Vertices {
+        self.triangles[id as usize].vertices.map(|v| self.positions[v as usize])
+    }
+
+    /// The corners of every triangle, in file order.
+    pub fn iter(&self) -> impl Iterator<Item = Vertices> {
+        (0..self.triangles.len() as u32).map(|id| self.corners(id))
     }
 }
 

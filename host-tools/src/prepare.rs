@@ -8,13 +8,14 @@ mod layout;
 pub use layout::Blob;
 
 use core_rt::bvh::Child;
-use core_rt::kernel::{Kernel, Vertices};
+use core_rt::kernel::{Bounds, Kernel};
+use core_rt::num::{cross, sub};
 use core_rt::record::Material;
 use thiserror::Error;
 
-use crate::grid::{Grid, GridError};
+use crate::grid::{Grid, GridError, Snapped};
 use crate::model::Model;
-use crate::tree::{self, TreeOptions};
+use crate::tree::{self, Flat, TreeOptions};
 
 /// How a scene is prepared.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -115,8 +116,9 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
         });
     }
     let grid = Grid::fit::<K>(model)?;
-    let (corners, ids, degenerates) = without_degenerates(grid.triangles(model));
-    if corners.is_empty() {
+    let snapped = grid.snap(model);
+    let (ids, degenerates) = with_area(&snapped);
+    if ids.is_empty() {
         return Err(PrepareError::AllDegenerate {
             triangles: model.triangles.len(),
             bits: K::GRID_BITS,
@@ -124,24 +126,20 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
             hint: "check the model's vertices, or bring camera and lights closer to it",
         });
     }
-    let flat = tree::build(&corners, options.tree);
-    let triangles: Vec<K::Triangle> = flat
-        .order
-        .iter()
-        .filter_map(|&place| {
-            let material = materials[model.triangles[ids[place as usize] as usize].material as usize];
-            K::triangle(&corners[place as usize], material)
-        })
-        .collect();
-    debug_assert_eq!(triangles.len(), flat.order.len(), "corners are on the grid and have area");
-    let nodes: Vec<K::Node> = flat.nodes.iter().map(|node| K::node(node.boxes, node.children)).collect();
-    let ids: Vec<u32> = flat.order.iter().map(|&place| ids[place as usize]).collect();
+    let Flat { root, nodes, order, depth } =
+        tree::build(ids.iter().map(|&id| Bounds::of(&snapped.corners(id))), options.tree);
+    let ids: Vec<u32> = order.into_iter().map(|place| ids[place as usize]).collect();
+    // Corners are on the grid and have area, and materials were counted: `triangle` has no reason left to refuse.
+    let triangle = |&id: &u32| {
+        let material = materials[model.triangles[id as usize].material as usize];
+        K::triangle(&snapped.corners(id), material).expect("a triangle that the grid and the kernel hold")
+    };
     let used: Vec<Material> = used.iter().map(|&m| header::material(&model.materials[m as usize])).collect();
     let blob = layout::write::<K>(model, &grid, layout::Parts {
-        root: flat.root,
-        depth: flat.depth,
-        nodes: &nodes,
-        triangles: &triangles,
+        root,
+        depth,
+        nodes: nodes.iter().map(|node| K::node(node.boxes, node.children)),
+        triangles: ids.iter().map(triangle),
         ids: &ids,
         materials: &used,
     })?;
@@ -162,26 +160,19 @@ fn used_materials(model: &Model) -> (Vec<u32>, Vec<u32>) {
     (used, numbers)
 }
 
-/// Triangles with area and their ids.
-fn without_degenerates(all: Vec<Vertices>) -> (Vec<Vertices>, Vec<u32>, Degenerates) {
+/// The ids of triangles with area on the grid, and the count of the others.
+fn with_area(snapped: &Snapped<'_>) -> (Vec<u32>, Degenerates) {
     let mut degenerates = Degenerates::default();
-    let mut ids = Vec::with_capacity(all.len());
-    let mut corners = Vec::with_capacity(all.len());
-    for (id, triangle) in (0..).zip(all) {
-        let [a, b, c] = triangle;
-        let [wide_a, wide_b, wide_c] = triangle.map(|v| v.map(i64::from));
-        let normal = core_rt::num::cross(
-            core_rt::num::sub(wide_b, wide_a),
-            core_rt::num::sub(wide_c, wide_a),
-        );
-        if a == b || b == c || c == a {
-            degenerates.zero_edge += 1;
-        } else if normal == [0; 3] {
-            degenerates.zero_area += 1;
-        } else {
+    let mut ids = Vec::new();
+    for (id, corners) in (0..).zip(snapped.iter()) {
+        let [a, b, c] = corners.map(|v| v.map(i64::from));
+        if cross(sub(b, a), sub(c, a)) != [0; 3] {
             ids.push(id);
-            corners.push(triangle);
+        } else if a == b || b == c || c == a {
+            degenerates.zero_edge += 1;
+        } else {
+            degenerates.zero_area += 1;
         }
     }
-    (corners, ids, degenerates)
+    (ids, degenerates)
 }

@@ -10,7 +10,7 @@ mod split;
 pub use flatten::{Flat, FlatNode};
 
 use core_rt::bvh::Child;
-use core_rt::kernel::{Bounds, Vertices};
+use core_rt::kernel::Bounds;
 use core_rt::scene::MAX_DEPTH;
 
 /// How a tree is built.
@@ -59,13 +59,13 @@ impl Item {
     }
 }
 
-/// Builds a tree over triangles, at least one and fewer than [`Child::INDEX_END`].
+/// Builds a tree over boxes, at least one and fewer than [`Child::INDEX_END`].
 #[must_use]
-pub fn build(triangles: &[Vertices], options: TreeOptions) -> Flat {
-    let mut items: Vec<Item> =
-        (0..).zip(triangles).map(|(index, t)| Item { bounds: Bounds::of(t), index }).collect();
+pub fn build(boxes: impl Iterator<Item = Bounds>, options: TreeOptions) -> Flat {
+    let mut items: Vec<Item> = (0..).zip(boxes).map(|(index, bounds)| Item { bounds, index }).collect();
     let tree = subtree(&mut items, 0, 0, options);
-    flatten::flatten(&tree, items.iter().map(|item| item.index).collect())
+    let order = items.into_iter().map(|item| item.index).collect();
+    flatten::flatten(&tree, order)
 }
 
 /// Below this, threads cost more than they bring.
@@ -107,10 +107,5 @@ fn subtree(items: &mut [Item], first: u32, level: u32, options: TreeOptions) -> 
 /// The box of boxes; empty for none.
 fn union(boxes: impl Iterator<Item = Bounds>) -> Bounds {
     let empty = Bounds { low: [i32::MAX; 3], high: [i32::MIN; 3] };
-    boxes.fold(empty, |a, b| grow(&a, &b))
-}
-
-fn grow(a: &Bounds, b: &Bounds) -> Bounds {
-    let pick = |f: fn(i32, i32) -> i32, a: [i32; 3], b: [i32; 3]| [f(a[0], b[0]), f(a[1], b[1]), f(a[2], b[2])];
-    Bounds { low: pick(i32::min, a.low, b.low), high: pick(i32::max, a.high, b.high) }
+    boxes.fold(empty, |a, b| a.union(&b))
 }

@@ -130,7 +130,8 @@ pub fn sample<K: Kernel>(smooth: bool) -> Blob {
     const VERTICES: &str = "mtllib s.mtl\nv 0 0 0\nv 4 0 0\nv 4 0 4\nv 0 0 4\nv 1 1 1\nv 3 1 2\nv 2 3 2\nv 2 1 3\n\
                             vn 0 1 0\nvn 1 1 0\nvn 0 1 1\n";
     const FLAT: &str = "usemtl floor\nf 1 4 3 2\nusemtl lamp\nf 5 7 6\nf 6 7 8\nf 8 7 5\n";
-    const SMOOTH: &str = "usemtl floor\nf 1//1 4//1 3//1 2//1\nusemtl lamp\nf 5//2 7//1 6//3\nf 6//3 7//1 8//2\nf 8 7 5\n";
+    const SMOOTH: &str =
+        "usemtl floor\nf 1//1 4//1 3//1 2//1\nusemtl lamp\nf 5//2 7//1 6//3\nf 6//3 7//1 8//2\nf 8 7 5\n";
     let obj = [VERTICES, if smooth { SMOOTH } else { FLAT }].concat();
     let files: [(&str, &[u8]); 3] = [
         ("s.obj", obj.as_bytes()),
@@ -151,7 +152,6 @@ pub fn sample<K: Kernel>(smooth: bool) -> Blob {
 ///
 /// # Panics
 /// Where the renderer does; where a ray looks at a node or a triangle twice.
-#[must_use]
 pub fn corners<K: Kernel>(scene: &Scene<'_, Full<K>>) -> Vec<Rgb888> {
     let [width, height] = scene.header.size;
     let side = |picture: u16| picture.min(8);

@@ -1,11 +1,18 @@
 //! What the fuzz targets run, and what holds for every input: no panic, and either a sound model or
-//! an error that says something on one line.
+//! an error that says something on one line; of a blob, an error or a picture.
 //!
 //! The targets themselves (`fuzz/`) need nightly; `tests/fuzz_corpus.rs` runs the same functions
 //! over their corpora on stable.
 
+use core_rt::exact::{Exact14, Exact29};
+use core_rt::kernel::Kernel;
+use core_rt::profile::Full;
+use core_rt::scene::Scene;
 use host_tools::import::{Embedded, ImportError, Imported, load_from};
 use host_tools::model::Model;
+use host_tools::prepare::Blob;
+
+use crate::blobs::{Draft, corners, repaired};
 
 /// Imports bytes as an OBJ, which is also its own material library under the name `m.mtl`.
 ///
@@ -28,6 +35,36 @@ pub fn scene_toml(data: &[u8]) {
         &Embedded(&[("x.toml", data), ("room.obj", ROOM)]),
         "x.toml",
     ));
+}
+
+/// Checks bytes as a blob of every kernel: as they are, and with what a fuzzer cannot guess put right: the prefix, the
+/// checksum, and what a triangle's record has that follows from its vertices. What is accepted is rendered.
+///
+/// # Panics
+/// If the check or the renderer does, or the renderer looks at a node twice.
+pub fn blob(data: &[u8]) {
+    blob_of::<Exact14>(data);
+    blob_of::<Exact29>(data);
+}
+
+fn blob_of<K: Kernel>(data: &[u8]) {
+    render_if_accepted::<K>(&Blob::from_bytes(data));
+    let signed = repaired(data, K::ID);
+    render_if_accepted::<K>(&signed);
+    if let Some(mut draft) = Draft::<K>::read(signed.bytes()) {
+        for triangle in &mut draft.triangles {
+            if let Some(made) = K::triangle(&K::vertices(triangle), K::material(triangle)) {
+                *triangle = made;
+            }
+        }
+        render_if_accepted::<K>(&draft.write());
+    }
+}
+
+fn render_if_accepted<K: Kernel>(blob: &Blob) {
+    if let Ok(scene) = Scene::<Full<K>>::new_checked(blob.bytes()) {
+        corners(&scene);
+    }
 }
 
 fn check(result: Result<Imported, ImportError>) {

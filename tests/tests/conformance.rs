@@ -31,7 +31,7 @@ where
 {
     fn new(corners: &[Vertices], leaf_max: u32) -> Self {
         let options = TreeOptions { leaf_max, leaf_always: leaf_max != 8, ..TreeOptions::default() };
-        let flat = tree::build(corners, options);
+        let flat = tree::build(corners.iter().map(core_rt::kernel::Bounds::of), options);
         let triangle = |&i: &u32| Exact::<W>::triangle(&corners[i as usize], 0).expect("on the grid, with area");
         let mut places = vec![0; corners.len()];
         for (place, &id) in (0..).zip(&flat.order) {
@@ -182,7 +182,7 @@ where
         let model = host_tools::import::load(&path).expect("a real model").model;
         let grid = host_tools::grid::Grid::fit::<Exact<W>>(&model).expect("it has extent");
         let corners: Vec<Triangle> =
-            grid.triangles(&model).iter().map(|t| t.map(|v| v.map(i64::from))).collect();
+            grid.snap(&model).iter().map(|t| t.map(|v| v.map(i64::from))).collect();
         compare::<W>(scene, &corners, 8, count, 7);
     }
 }

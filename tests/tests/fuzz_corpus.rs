@@ -27,3 +27,8 @@ fn obj() {
 fn scene_toml() {
     assert!(replay("scene_toml", tests::fuzz::scene_toml) >= 15);
 }
+
+#[test]
+fn blob() {
+    assert!(replay("blob", tests::fuzz::blob) >= 8);
+}

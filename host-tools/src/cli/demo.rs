@@ -23,7 +23,7 @@ pub(super) fn run() -> Result<(), Failure> {
     let mut rows = Vec::new();
     for engine in ENGINES {
         let prepared = engine.prepare(&model, &Options::default())?;
-        let scene = Scene { engine, blob: prepared.blob.clone(), prepared: Some(prepared) };
+        let scene = Scene { engine, blob: prepared.blob, degenerates: Some(prepared.degenerates) };
         let picture = render::picture(&scene)?.picture;
         let apart = compare(&picture, &reference)?;
         rows.push(format!(

@@ -13,7 +13,7 @@ use crate::files;
 use crate::import::{self, Imported};
 use crate::model::Model;
 use crate::picture::size_is_allowed;
-use crate::prepare::{Blob, Options, Prepared};
+use crate::prepare::{Blob, Degenerates, Options};
 use crate::tree::TreeOptions;
 
 /// A scene, and how it is prepared.
@@ -40,7 +40,7 @@ pub(super) struct Scene {
     pub(super) engine: &'static dyn Engine,
     pub(super) blob: Blob,
     /// Where the scene was not a blob already.
-    pub(super) prepared: Option<Prepared>,
+    pub(super) degenerates: Option<Degenerates>,
 }
 
 impl SceneArguments {
@@ -59,8 +59,8 @@ impl SceneArguments {
         let prepared = engine
             .prepare(&model, &self.options())
             .map_err(|error| Failure::input(format!("{}: {error}", self.scene.display())))?;
-        warn_of_degenerates(&prepared, model.triangles.len());
-        Ok(Scene { engine, blob: prepared.blob.clone(), prepared: Some(prepared) })
+        warn_of_degenerates(prepared.degenerates, model.triangles.len());
+        Ok(Scene { engine, blob: prepared.blob, degenerates: Some(prepared.degenerates) })
     }
 
     /// Reads a blob; what would need its source is refused.
@@ -84,7 +84,7 @@ impl SceneArguments {
                 own[0], own[1]
             )));
         }
-        Ok(Scene { engine, blob, prepared: None })
+        Ok(Scene { engine, blob, degenerates: None })
     }
 
     fn engine(&self) -> Option<&'static dyn Engine> {
@@ -108,8 +108,7 @@ fn model(path: &Path) -> Result<Model, Failure> {
     Ok(model)
 }
 
-fn warn_of_degenerates(prepared: &Prepared, triangles: usize) {
-    let degenerates = prepared.degenerates;
+fn warn_of_degenerates(degenerates: Degenerates, triangles: usize) {
     if degenerates.total() > 0 {
         eprintln!(
             "warning: {} of {triangles} triangles have no area on the grid and were left out ({} with two corners in one \

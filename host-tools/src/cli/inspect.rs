@@ -54,7 +54,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         grid_bits: scene.engine.grid_bits(),
         triangles: counts.triangles,
         degenerate: header.file_triangles.saturating_sub(counts.triangles),
-        degenerates: scene.prepared.map(|prepared| prepared.degenerates),
+        degenerates: scene.degenerates,
         nodes: counts.nodes,
         depth: header.depth,
         materials: counts.materials,

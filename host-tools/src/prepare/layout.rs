@@ -1,6 +1,6 @@
 //! The blob's bytes. `docs/BLOB.md` specifies them; `core_rt::blob` reads them.
 
-use core_rt::blob::{Counts, Header, MAGIC, Prefix, SourceGrid, TRAILER_SIZE, VERSION, crc32};
+use core_rt::blob::{Counts, Header, MAGIC, PREFIX_SIZE, Prefix, SourceGrid, TRAILER_SIZE, VERSION, crc32};
 use core_rt::kernel::Kernel;
 use core_rt::profile::Need;
 use core_rt::record::{Material, Record};
@@ -35,41 +35,60 @@ impl Blob {
     }
 }
 
-/// What the tree's builder and the kernel made.
-pub(super) struct Parts<'a, K: Kernel> {
+/// What the tree's builder and the kernel made, in the order of the blob.
+pub(super) struct Parts<'a, N, T> {
     pub(super) root: u32,
     pub(super) depth: u8,
-    pub(super) nodes: &'a [K::Node],
-    pub(super) triangles: &'a [K::Triangle],
+    pub(super) nodes: N,
+    pub(super) triangles: T,
     /// The file's number of each triangle.
     pub(super) ids: &'a [u32],
     pub(super) materials: &'a [Material],
 }
 
-/// Bytes that grow by sections.
-struct Writer(Vec<u8>);
+/// Memory of a blob's size, filled section by section: records go straight to their place.
+struct Writer {
+    words: Vec<u64>,
+    used: usize,
+}
 
 impl Writer {
-    fn pad(&mut self) {
-        self.0.resize(self.0.len().next_multiple_of(ALIGN), 0);
+    fn with_capacity(bytes: usize) -> Self {
+        Self { words: vec![0; bytes / ALIGN], used: 0 }
     }
 
-    fn records<T: Record>(&mut self, records: &[T]) {
-        self.0.extend_from_slice(records.as_bytes());
-        self.pad();
+    fn bytes(&mut self, bytes: &[u8]) {
+        self.words.as_mut_bytes()[self.used..][..bytes.len()].copy_from_slice(bytes);
+        self.used += bytes.len();
+    }
+
+    /// A section; what pads it to a multiple of 8 is zero already.
+    fn records<T: Record>(&mut self, records: impl Iterator<Item = T>) {
+        for record in records {
+            self.bytes(record.as_bytes());
+        }
+        self.used = self.used.next_multiple_of(ALIGN);
     }
 
     fn integers(&mut self, values: &[u32], wide: bool) {
-        if wide {
-            self.records(values);
-        } else {
-            self.records(&values.iter().map(|&v| v as u16).collect::<Vec<_>>());
-        }
+        if wide { self.records(values.iter().copied()) } else { self.records(values.iter().map(|&v| v as u16)) }
+    }
+
+    /// Closes the blob by its checksum, in its last four bytes.
+    fn close(mut self) -> Blob {
+        let size = size_of_val(self.words.as_slice());
+        let checksum = crc32(&self.words.as_bytes()[..size - 4]);
+        self.words.as_mut_bytes()[size - 4..].copy_from_slice(&checksum.to_le_bytes());
+        Blob { words: self.words, size }
     }
 }
 
 /// Writes the blob.
-pub(super) fn write<K: Kernel>(model: &Model, grid: &Grid, parts: Parts<'_, K>) -> Result<Blob, PrepareError> {
+pub(super) fn write<K: Kernel>(
+    model: &Model,
+    grid: &Grid,
+    parts: Parts<'_, impl ExactSizeIterator<Item = K::Node>, impl ExactSizeIterator<Item = K::Triangle>>,
+) -> Result<Blob, PrepareError> {
     let (normals, corners) = normals::<K>(model, parts.ids);
     let lights: Vec<_> = model.lights.iter().map(|light| header::light(light, grid)).collect();
     let wide_ids = model.triangles.len() > 1 << 16;
@@ -104,19 +123,23 @@ pub(super) fn write<K: Kernel>(model: &Model, grid: &Grid, parts: Parts<'_, K>) 
         },
     };
     let encoded = postcard::to_stdvec(&header).unwrap_or_default();
-    let mut writer = Writer(vec![0; core_rt::blob::PREFIX_SIZE]);
-    writer.records(&encoded);
-    writer.records(parts.nodes);
-    writer.records(parts.triangles);
-    writer.integers(parts.ids, wide_ids);
-    writer.integers(&corners, wide_normals);
-    writer.records(&normals);
-    writer.records(parts.materials);
-    writer.records(&lights);
-    let Writer(mut bytes) = writer;
-    let total = bytes.len() + TRAILER_SIZE;
-    let total_size =
-        u32::try_from(total).map_err(|_| PrepareError::TooLarge { bytes: total as u64 })?;
+    let integer = |wide: bool| if wide { 4 } else { 2 };
+    let total: usize = [
+        PREFIX_SIZE,
+        encoded.len(),
+        parts.nodes.len() * size_of::<K::Node>(),
+        parts.triangles.len() * size_of::<K::Triangle>(),
+        parts.ids.len() * integer(wide_ids),
+        corners.len() * integer(wide_normals),
+        size_of_val(normals.as_slice()),
+        size_of_val(parts.materials),
+        size_of_val(lights.as_slice()),
+        TRAILER_SIZE,
+    ]
+    .into_iter()
+    .map(|size| size.next_multiple_of(ALIGN))
+    .sum();
+    let total_size = u32::try_from(total).map_err(|_| PrepareError::TooLarge { bytes: total as u64 })?;
     let prefix = Prefix {
         magic: MAGIC,
         version: VERSION,
@@ -125,11 +148,17 @@ pub(super) fn write<K: Kernel>(model: &Model, grid: &Grid, parts: Parts<'_, K>) 
         total_size,
         reserved: 0,
     };
-    bytes[..core_rt::blob::PREFIX_SIZE].copy_from_slice(prefix.as_bytes());
-    bytes.extend_from_slice(&[0; 4]);
-    let checksum = crc32(&bytes);
-    bytes.extend_from_slice(&checksum.to_le_bytes());
-    Ok(Blob::from_bytes(&bytes))
+    let mut writer = Writer::with_capacity(total);
+    writer.bytes(prefix.as_bytes());
+    writer.records(encoded.into_iter());
+    writer.records(parts.nodes);
+    writer.records(parts.triangles);
+    writer.integers(parts.ids, wide_ids);
+    writer.integers(&corners, wide_normals);
+    writer.records(normals.into_iter());
+    writer.records(parts.materials.iter().copied());
+    writer.records(lights.into_iter());
+    Ok(writer.close())
 }
 
 /// The normals that are used, and three indices a triangle; both empty where no triangle is smooth.

@@ -1,6 +1,6 @@
 //! The best split of a node, by the surface area heuristic over bins.
 
-use super::{Item, TreeOptions, grow, union};
+use super::{Item, TreeOptions, union};
 use core_rt::kernel::Bounds;
 
 const BINS: usize = 16;
@@ -48,9 +48,9 @@ pub(super) fn best(items: &[Item], bounds: &Bounds, options: TreeOptions) -> Opt
         for item in items {
             let (count, bounds) = &mut bins[bin(item.centre_2x(axis), low, extent)];
             *count += 1;
-            *bounds = grow(bounds, &item.bounds);
+            *bounds = bounds.union(&item.bounds);
         }
-        let merge = |a: (u32, Bounds), b: &(u32, Bounds)| (a.0 + b.0, grow(&a.1, &b.1));
+        let merge = |a: (u32, Bounds), b: &(u32, Bounds)| (a.0 + b.0, a.1.union(&b.1));
         // What lies to the right of each bin's beginning.
         let mut right = [empty; BINS];
         let mut sum = empty;
@@ -75,11 +75,16 @@ pub(super) fn best(items: &[Item], bounds: &Bounds, options: TreeOptions) -> Opt
     best
 }
 
-/// Brings the left items before the right ones, keeping their order, and returns where the right ones begin.
+/// Brings the left items before the right ones, in place, and returns where the right ones begin.
 pub(super) fn partition(items: &mut [Item], split: &Split) -> usize {
-    let (left, right): (Vec<Item>, Vec<Item>) = items.iter().partition(|item| split.bin_of(item) < split.bin);
-    let middle = left.len();
-    items[..middle].copy_from_slice(&left);
-    items[middle..].copy_from_slice(&right);
-    middle
+    let (mut left, mut right) = (0, items.len());
+    while left < right {
+        if split.bin_of(&items[left]) < split.bin {
+            left += 1;
+        } else {
+            right -= 1;
+            items.swap(left, right);
+        }
+    }
+    left
 }

@@ -29,10 +29,11 @@ fn minus(a: [i64; 3], b: [i64; 3]) -> [i64; 3] {
 ///
 /// # Errors
 /// What does not agree.
-pub fn agree(blob: &Blob, model: &Model) -> Checked {
+pub(crate) fn agree(blob: &Blob, model: &Model) -> Checked {
     header(blob, model)?;
     camera(blob, model)?;
     tree(blob)?;
+    origins(blob)?;
     triangles(blob, model)?;
     normals(blob, model)?;
     shading(blob, model)
@@ -47,7 +48,8 @@ fn place(blob: &Blob, point: DVec3) -> [i64; 3] {
 fn is_light(radiance: &Radiance, light: DVec3) -> bool {
     let step = 2_f64.powi(radiance.exponent as i32 - 16);
     let strongest = radiance.mantissa.into_iter().max().unwrap_or(0);
-    let close = radiance.mantissa.iter().zip(light.to_array()).all(|(&m, c)| (f64::from(m) * step - c).abs() <= step / 2.0);
+    let close =
+        radiance.mantissa.iter().zip(light.to_array()).all(|(&m, c)| (f64::from(m) * step - c).abs() <= step / 2.0);
     let least = strongest >= 1 << 15 || radiance.exponent == -15 || (strongest == 0 && radiance.exponent == 0);
     close && least && (-15..=15).contains(&radiance.exponent)
 }
@@ -82,7 +84,6 @@ fn header(blob: &Blob, model: &Model) -> Checked {
 fn camera(blob: &Blob, model: &Model) -> Checked {
     let (header, camera) = (&blob.header, &model.camera);
     rule(header.eye == place(blob, camera.position), "eye")?;
-    rule(within(&header.eye, blob.kernel.origins), "range of the eye")?;
     rule(header.fraction_bits <= blob.kernel.fraction_bits_most, "fraction bits")?;
     let forward = (camera.look_at - camera.position).normalize();
     let right = forward.cross(camera.up).normalize();
@@ -92,10 +93,10 @@ fn camera(blob: &Blob, model: &Model) -> Checked {
     let bound = 1_i64 << (blob.kernel.direction_bits + u32::from(header.fraction_bits));
     for (x, y) in [(0, 0), (header.size[0] - 1, 0), (0, header.size[1] - 1), (header.size[0] - 1, header.size[1] - 1)] {
         let mut direction = [0; 3];
-        for axis in 0..3 {
+        for (axis, component) in direction.iter_mut().enumerate() {
             let sum = header.first[axis] + x as i64 * header.right[axis] + y as i64 * header.down[axis];
             rule(sum.abs() + half < bound, "range of directions")?;
-            direction[axis] = (sum + half) >> header.fraction_bits;
+            *component = (sum + half) >> header.fraction_bits;
         }
         // Pixel centres on a picture at distance 1.
         let extent = (camera.fov_y / 2.0).tan();
@@ -110,16 +111,17 @@ fn camera(blob: &Blob, model: &Model) -> Checked {
 }
 
 fn tree(blob: &Blob) -> Checked {
+    let (least, most) = blob.kernel.vertices;
     let mut next = (0, 0);
-    let levels = subtree(blob, blob.header.root, None, &mut next)?;
+    let levels = subtree(blob, blob.header.root, Bounds { low: [least; 3], high: [most; 3] }, &mut next)?;
     rule(next == (blob.nodes.len(), blob.triangles.len()), "nodes or triangles are left over")?;
     rule(levels == u32::from(blob.header.depth) && levels <= 64, "depth")
 }
 
 /// Checks a subtree against the next free node and triangle; its levels.
-fn subtree(blob: &Blob, word: u32, holder: Option<Bounds>, next: &mut (usize, usize)) -> Result<u32, String> {
+fn subtree(blob: &Blob, word: u32, holder: Bounds, next: &mut (usize, usize)) -> Result<u32, String> {
     let inside = |low: [i64; 3], high: [i64; 3]| {
-        holder.is_none_or(|b| (0..3).all(|axis| b.low[axis] <= low[axis] && high[axis] <= b.high[axis]))
+        (0..3).all(|axis| holder.low[axis] <= low[axis] && high[axis] <= holder.high[axis])
     };
     if word >> 31 == 1 {
         let (count, first) = ((word >> 25 & 63) as usize + 1, (word & 0x1ff_ffff) as usize);
@@ -135,9 +137,19 @@ fn subtree(blob: &Blob, word: u32, holder: Option<Bounds>, next: &mut (usize, us
     let mut levels = 0;
     for (bounds, child) in node.boxes.into_iter().zip(node.children) {
         rule(inside(bounds.low, bounds.high), "a box outside its parent's")?;
-        levels = levels.max(1 + subtree(blob, child, Some(bounds), next)?);
+        levels = levels.max(1 + subtree(blob, child, bounds, next)?);
     }
     Ok(levels)
+}
+
+/// The root's boxes are tight, so what is within the span of the vertices is within that of the boxes.
+fn origins(blob: &Blob) -> Checked {
+    let lights = blob.lights.iter().filter(|light| light.kind == 0).map(|light| light.place);
+    for origin in lights.chain([blob.header.eye]) {
+        let mut differences = blob.triangles.iter().flat_map(|t| t.vertices).flat_map(|vertex| minus(vertex, origin));
+        rule(differences.all(|difference| difference.abs() <= blob.kernel.span), "span")?;
+    }
+    Ok(())
 }
 
 fn triangles(blob: &Blob, model: &Model) -> Checked {
@@ -200,7 +212,6 @@ fn shading(blob: &Blob, model: &Model) -> Checked {
         match meant.kind {
             LightKind::Point(position) => {
                 rule(light.kind == 0 && light.place == place(blob, position), "place of a light")?;
-                rule(within(&light.place, blob.kernel.origins), "range of a light")?;
             }
             LightKind::Directional(direction) => {
                 let unit = 2_f64.powi(30);

@@ -1,29 +1,27 @@
 //! A reader of blobs, made from `docs/BLOB.md` alone: plain arithmetic on bytes, and nothing of core-rt.
 
-use std::ops::Range;
-
 /// The document's table of kernels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Kernel {
-    pub id: u16,
+pub(crate) struct Kernel {
+    pub(crate) id: u16,
     /// Of a plane and of a triangle's field, bytes.
-    pub short: usize,
-    pub vertices: (i64, i64),
-    pub origins: (i64, i64),
-    pub direction_bits: u32,
-    pub fraction_bits_most: u8,
-    pub normal_bits: u32,
-    pub shift_bits: u32,
-    pub material_most: u32,
+    pub(crate) short: usize,
+    pub(crate) vertices: (i64, i64),
+    pub(crate) span: i64,
+    pub(crate) direction_bits: u32,
+    pub(crate) fraction_bits_most: u8,
+    pub(crate) normal_bits: u32,
+    pub(crate) shift_bits: u32,
+    pub(crate) material_most: u32,
     /// Of a unit normal.
-    pub unit_bits: u32,
+    pub(crate) unit_bits: u32,
 }
 
-pub const EXACT14: Kernel = Kernel {
+pub(crate) const EXACT14: Kernel = Kernel {
     id: 14,
     short: 2,
-    vertices: (0, 16_383),
-    origins: (-16_384, 32_767),
+    vertices: (4, (1 << 15) - 5),
+    span: (1 << 15) - 4,
     direction_bits: 13,
     fraction_bits_most: 17,
     normal_bits: 15,
@@ -32,11 +30,11 @@ pub const EXACT14: Kernel = Kernel {
     unit_bits: 14,
 };
 
-pub const EXACT29: Kernel = Kernel {
+pub(crate) const EXACT29: Kernel = Kernel {
     id: 29,
     short: 4,
     vertices: (8, (1 << 29) - 9),
-    origins: (8, (1 << 29) - 9),
+    span: (1 << 29) - 8,
     direction_bits: 31,
     fraction_bits_most: 30,
     normal_bits: 30,
@@ -46,87 +44,85 @@ pub const EXACT29: Kernel = Kernel {
 };
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Radiance {
-    pub mantissa: [u16; 3],
-    pub exponent: i64,
+pub(crate) struct Radiance {
+    pub(crate) mantissa: [u16; 3],
+    pub(crate) exponent: i64,
 }
 
 #[derive(Clone, Debug)]
-pub struct Header {
-    pub needs: u32,
-    pub size: [u64; 2],
-    pub eye: [i64; 3],
-    pub first: [i64; 3],
-    pub right: [i64; 3],
-    pub down: [i64; 3],
-    pub fraction_bits: u8,
-    pub background: Radiance,
-    pub ambient: Radiance,
-    pub transfer: u64,
-    pub root: u32,
-    pub depth: u8,
+pub(crate) struct Header {
+    pub(crate) needs: u32,
+    pub(crate) size: [u64; 2],
+    pub(crate) eye: [i64; 3],
+    pub(crate) first: [i64; 3],
+    pub(crate) right: [i64; 3],
+    pub(crate) down: [i64; 3],
+    pub(crate) fraction_bits: u8,
+    pub(crate) background: Radiance,
+    pub(crate) ambient: Radiance,
+    pub(crate) transfer: u64,
+    pub(crate) root: u32,
+    pub(crate) depth: u8,
     /// Nodes, triangles, smooth, normals, materials, lights.
-    pub counts: [usize; 6],
-    pub file_triangles: u64,
-    pub origin: [f64; 3],
-    pub scale: f64,
+    pub(crate) counts: [usize; 6],
+    pub(crate) file_triangles: u64,
+    pub(crate) origin: [f64; 3],
+    pub(crate) scale: f64,
 }
 
 /// Least and greatest coordinates, both inside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Bounds {
-    pub low: [i64; 3],
-    pub high: [i64; 3],
+pub(crate) struct Bounds {
+    pub(crate) low: [i64; 3],
+    pub(crate) high: [i64; 3],
 }
 
 #[derive(Clone, Copy, Debug)]
-pub struct Node {
-    pub boxes: [Bounds; 2],
-    pub children: [u32; 2],
+pub(crate) struct Node {
+    pub(crate) boxes: [Bounds; 2],
+    pub(crate) children: [u32; 2],
 }
 
 #[derive(Clone, Copy, Debug)]
-pub struct Triangle {
-    pub vertices: [[i64; 3]; 3],
-    pub edges: [[i64; 3]; 2],
-    pub n: [i64; 3],
-    pub shift: u32,
-    pub material: u32,
+pub(crate) struct Triangle {
+    pub(crate) vertices: [[i64; 3]; 3],
+    pub(crate) edges: [[i64; 3]; 2],
+    pub(crate) n: [i64; 3],
+    pub(crate) shift: u32,
+    pub(crate) material: u32,
 }
 
 #[derive(Clone, Copy, Debug)]
-pub struct Material {
-    pub emission: Radiance,
-    pub albedo: [u16; 3],
-    pub reserved: u16,
+pub(crate) struct Material {
+    pub(crate) emission: Radiance,
+    pub(crate) albedo: [u16; 3],
+    pub(crate) reserved: u16,
 }
 
 #[derive(Clone, Copy, Debug)]
-pub struct Light {
-    pub kind: u32,
-    pub place: [i64; 3],
-    pub radiance: Radiance,
+pub(crate) struct Light {
+    pub(crate) kind: u32,
+    pub(crate) place: [i64; 3],
+    pub(crate) radiance: Radiance,
 }
 
-/// Everything that a blob says, and where its parts lie.
+/// Everything that a blob says.
 #[derive(Clone, Debug)]
-pub struct Blob {
-    pub kernel: Kernel,
-    pub header: Header,
-    pub nodes: Vec<Node>,
-    pub triangles: Vec<Triangle>,
-    pub ids: Vec<u32>,
+pub(crate) struct Blob {
+    pub(crate) kernel: Kernel,
+    pub(crate) header: Header,
+    pub(crate) nodes: Vec<Node>,
+    pub(crate) triangles: Vec<Triangle>,
+    pub(crate) ids: Vec<u32>,
     /// `None` for a flat triangle; empty for a flat scene.
-    pub corners: Vec<Option<[u32; 3]>>,
-    pub normals: Vec<[i64; 3]>,
-    pub materials: Vec<Material>,
-    pub lights: Vec<Light>,
-    /// Header, nodes, triangles, ids, normal indices, normals, materials, lights: without padding.
-    pub parts: [Range<usize>; 8],
+    pub(crate) corners: Vec<Option<[u32; 3]>>,
+    pub(crate) normals: Vec<[i64; 3]>,
+    pub(crate) materials: Vec<Material>,
+    pub(crate) lights: Vec<Light>,
 }
 
 /// The document's CRC-32, bit by bit.
-pub fn crc32(bytes: &[u8]) -> u32 {
+pub(crate) fn crc32(bytes: &[u8]) -> u32 {
     let mut crc = u32::MAX;
     for &byte in bytes {
         crc ^= u32::from(byte);
@@ -177,18 +173,15 @@ impl Cursor<'_> {
     }
 
     fn pad(&mut self) {
-        while self.at % 8 != 0 {
+        while !self.at.is_multiple_of(8) {
             assert_eq!(self.unsigned(1), 0, "padding");
         }
     }
 
-    /// The records of a section, and where it lies.
-    fn section<T>(&mut self, count: usize, mut read: impl FnMut(&mut Self) -> T) -> (Vec<T>, Range<usize>) {
-        let start = self.at;
+    fn section<T>(&mut self, count: usize, mut read: impl FnMut(&mut Self) -> T) -> Vec<T> {
         let records = (0..count).map(|_| read(self)).collect();
-        let end = self.at;
         self.pad();
-        (records, start..end)
+        records
     }
 
     fn radiance(&mut self) -> Radiance {
@@ -244,7 +237,7 @@ impl Cursor<'_> {
 }
 
 /// Reads a whole blob. Panics where the document is not kept to: this is a test's reader.
-pub fn read(bytes: &[u8]) -> Blob {
+pub(crate) fn read(bytes: &[u8]) -> Blob {
     assert_eq!(bytes[..8], [0x89, 0x69, 0x6e, 0x74, 0x72, 0x61, 0x79, 0x0a], "magic");
     let mut cursor = Cursor { bytes, at: 8 };
     assert_eq!(cursor.unsigned(2), 1, "version");
@@ -257,27 +250,26 @@ pub fn read(bytes: &[u8]) -> Blob {
     assert_eq!(cursor.unsigned(4) as usize, bytes.len(), "total size");
     assert_eq!(cursor.unsigned(4), 0, "reserved");
     let header = cursor.header();
-    let header_part = 24..cursor.at;
-    assert_eq!(header_part.len(), header_size, "header size");
+    assert_eq!(cursor.at, 24 + header_size, "header size");
     cursor.pad();
 
     let [node_count, triangle_count, smooth, normal_count, material_count, light_count] = header.counts;
     let wide = |bit: u32| if header.needs >> bit & 1 == 1 { 4 } else { 2 };
-    let (nodes, node_part) = cursor.section(node_count, |c| c.node(kernel));
-    let (triangles, triangle_part) = cursor.section(triangle_count, |c| c.triangle(kernel));
-    let (ids, id_part) = cursor.section(triangle_count, |c| c.unsigned(wide(8)) as u32);
+    let nodes = cursor.section(node_count, |c| c.node(kernel));
+    let triangles = cursor.section(triangle_count, |c| c.triangle(kernel));
+    let ids = cursor.section(triangle_count, |c| c.unsigned(wide(8)) as u32);
     let flat = if wide(9) == 4 { u32::MAX } else { u16::MAX.into() };
-    let (corners, corner_part) = cursor.section(smooth, |c| {
+    let corners = cursor.section(smooth, |c| {
         let indices = c.three(|c| c.unsigned(wide(9)) as u32);
         (indices != [flat; 3]).then_some(indices)
     });
-    let (normals, normal_part) = cursor.section(normal_count, |c| c.three(|c| c.signed(kernel.short)));
-    let (materials, material_part) = cursor.section(material_count, |c| Material {
+    let normals = cursor.section(normal_count, |c| c.three(|c| c.signed(kernel.short)));
+    let materials = cursor.section(material_count, |c| Material {
         emission: c.radiance(),
         albedo: c.three(|c| c.unsigned(2) as u16),
         reserved: c.unsigned(2) as u16,
     });
-    let (lights, light_part) = cursor.section(light_count, |c| Light {
+    let lights = cursor.section(light_count, |c| Light {
         kind: c.unsigned(4) as u32,
         place: c.three(|c| c.signed(4)),
         radiance: c.radiance(),
@@ -286,7 +278,5 @@ pub fn read(bytes: &[u8]) -> Blob {
     let computed = crc32(&bytes[..cursor.at]);
     assert_eq!(cursor.unsigned(4), u64::from(computed), "checksum");
     assert_eq!(cursor.at, bytes.len(), "nothing follows");
-    let parts =
-        [header_part, node_part, triangle_part, id_part, corner_part, normal_part, material_part, light_part];
-    Blob { kernel, header, nodes, triangles, ids, corners, normals, materials, lights, parts }
+    Blob { kernel, header, nodes, triangles, ids, corners, normals, materials, lights }
 }

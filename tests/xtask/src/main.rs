@@ -84,17 +84,15 @@ fn perform(verb: Verb) -> Result<(), String> {
             Step::new("goldens by their state", Task::new("git status --short -- tests/goldens")),
         ])
         .map(drop),
-        Verb::DemoScene => {
-            demo_scene::write(Path::new("scenes/demo")).map_err(|error| format!("scenes/demo: {error}"))
-        }
+        Verb::DemoScene => demo_scene::write(Path::new("scenes/demo")).map_err(|error| format!("scenes/demo: {error}")),
     }
 }
 
 /// Runs steps and sums up; how many were skipped.
 fn run(steps: &[Step]) -> Result<usize, String> {
     let start = std::time::Instant::now();
-    let summary = steps::run(steps)
-        .map_err(|failure| format!("{}\nrepeat it by: {}", failure.reason, failure.command))?;
+    let summary =
+        steps::run(steps).map_err(|failure| format!("{}\nrepeat it by: {}", failure.reason, failure.command))?;
     let skipped = summary.skipped.len();
     let list = summary.skipped.join(", ");
     let list = if skipped == 0 { String::new() } else { format!(": {list}") };

@@ -93,8 +93,7 @@ mod tests {
 
     #[test]
     fn all_steps_that_can_be_run_are_counted() {
-        const UNICORN: Tool =
-            Tool { name: "unicorn", hint: "wait", is_present: || false, install: || Ok(()) };
+        const UNICORN: Tool = Tool { name: "unicorn", hint: "wait", is_present: || false, install: || Ok(()) };
         // Were the second one run, it would fail.
         let summary = run(&[step(GOOD), step(BAD).needing(&[UNICORN]), step(GOOD)]).unwrap();
         assert_eq!(summary, Summary { passed: 2, skipped: vec!["a step (wait)".into()] });
@@ -108,12 +107,8 @@ mod tests {
 
     #[test]
     fn an_installation_that_fails_is_a_failure_and_not_a_skip() {
-        const BROKEN: Tool = Tool {
-            name: "broken",
-            hint: "mend it",
-            is_present: || false,
-            install: || Task::new(BAD).run(),
-        };
+        const BROKEN: Tool =
+            Tool { name: "broken", hint: "mend it", is_present: || false, install: || Task::new(BAD).run() };
         assert_eq!(run(&[step(GOOD).needing(&[BROKEN])]).unwrap_err().command, BAD);
     }
 }

@@ -1,0 +1,84 @@
+//! Triangles, materials, lights and normals that no scene has.
+
+use core_rt::blob::BlobError;
+use core_rt::kernel::Kernel;
+use core_rt::record::Light;
+use core_rt::space::Space;
+use tests::blobs::{Draft, sample};
+use zerocopy::{FromZeros, IntoBytes};
+
+use crate::{for_every_kernel, refused, verdict};
+
+for_every_kernel!(broken_triangles, broken_shading);
+
+fn broken_triangles<K: Kernel>() {
+    let third = BlobError::Triangle { index: 2 };
+    refused::<K>(
+        true,
+        &[
+            (
+                "a material that does not exist",
+                |d| d.triangles[2] = K::triangle(&K::vertices(&d.triangles[2]), 2).expect("it can be packed"),
+                third,
+            ),
+            (
+                "no materials",
+                |d| (d.materials, d.header.counts.materials) = (Vec::new(), 0),
+                BlobError::Triangle { index: 0 },
+            ),
+            (
+                "a normal that is not that of its corners",
+                |d| {
+                    // v0, e1, e2, n and meta are thirteen numbers of one width; this is n's first.
+                    let width = size_of::<K::Triangle>() / 13;
+                    d.triangles[2].as_mut_bytes()[9 * width] ^= 1;
+                },
+                third,
+            ),
+            ("a normal beyond the last", |d| d.normal_indices[3 * 2 + 1] = d.header.counts.normals, third),
+            (
+                "one corner of three without a normal",
+                |d| {
+                    d.normal_indices[6..9].copy_from_slice(&[0; 3]);
+                    d.normal_indices[7] = u16::MAX.into();
+                },
+                third,
+            ),
+            ("an id that is not in the file", |d| d.ids[2] = d.header.file_triangles, third),
+            ("a file without triangles", |d| d.header.file_triangles = 0, BlobError::Triangle { index: 0 }),
+        ],
+    );
+    // Zeros have no area and lie in a corner of the grid, which some box must be made to hold.
+    let mut draft = Draft::<K>::read(sample::<K>(false).bytes()).expect("a good blob");
+    draft.triangles[2] = K::Triangle::new_zeroed();
+    let said = verdict::<K>(draft.write().bytes());
+    assert!(matches!(said, Err(BlobError::Bounds { .. } | BlobError::Triangle { index: 2 })), "{said:?}");
+}
+
+/// The place in the sample of the light of a kind.
+fn light<K: Kernel>(draft: &mut Draft<K>, kind: u32) -> &mut Light {
+    draft.lights.iter_mut().find(|light| light.kind == kind).expect("one of each")
+}
+
+fn broken_shading<K: Kernel>() {
+    refused::<K>(
+        true,
+        &[
+            ("a background too bright", |d| d.header.background.exponent = 16, BlobError::Shading),
+            ("ambient light too dim", |d| d.header.ambient.exponent = -16, BlobError::Shading),
+            ("an emission out of range", |d| d.materials[1].emission.exponent = i16::MAX, BlobError::Shading),
+            ("a light out of range", |d| d.lights[0].radiance.exponent = i16::MIN, BlobError::Shading),
+            ("a material from the future", |d| d.materials[0].reserved = 1, BlobError::Shading),
+            ("a kind of light from the future", |d| d.lights[1].kind = 2, BlobError::Shading),
+            ("a direction of length zero", |d| light(d, Light::DIRECTIONAL).place = [0; 3], BlobError::Shading),
+            ("a direction too long", |d| light(d, Light::DIRECTIONAL).place = [i32::MIN; 3], BlobError::Shading),
+            ("a direction of length 1.01", |d| light(d, Light::DIRECTIONAL).place = [0, 1_084_479_242, 0], {
+                BlobError::Shading
+            }),
+            ("a light too far off", |d| light(d, Light::POINT).place[2] += K::SPAN, BlobError::Origin),
+            ("a light below all", |d| light(d, Light::POINT).place[0] = i32::MIN, BlobError::Origin),
+            ("a normal of length zero", |d| d.normals[1] = K::Space::normal([0; 3]), BlobError::Shading),
+            ("a normal of length 2", |d| d.normals[0].as_mut_bytes().fill(0x7f), BlobError::Shading),
+        ],
+    );
+}
