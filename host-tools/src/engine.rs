@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use core_rt::blob::{BlobError, Header, Prefix};
+use core_rt::blob::{BlobError, Header};
 use core_rt::exact::{Exact14, Exact29};
 use core_rt::kernel::Kernel;
 use core_rt::profile::Full;
@@ -98,14 +98,8 @@ pub fn by_name(name: &str) -> Option<&'static dyn Engine> {
     ENGINES.into_iter().find(|engine| engine.name() == name)
 }
 
-/// The kernel that a blob is for.
-///
-/// # Errors
-/// Where it is no blob, or for no kernel of this program.
-pub fn of_blob(blob: &[u8]) -> Result<&'static dyn Engine, BlobError> {
-    let prefix = Prefix::read(blob)?;
-    ENGINES
-        .into_iter()
-        .find(|engine| engine.id() == prefix.kernel)
-        .ok_or(BlobError::Kernel { found: prefix.kernel, expected: ENGINES[0].id() })
+/// The kernel of a number, as a blob has it.
+#[must_use]
+pub fn by_id(id: u16) -> Option<&'static dyn Engine> {
+    ENGINES.into_iter().find(|engine| engine.id() == id)
 }

@@ -14,10 +14,10 @@ const MOST_BYTES: u64 = 1 << 30;
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
     /// Nothing has that name.
-    #[error("{}: no such file; check the path", .0.display())]
+    #[error("{}: no such file", .0.display())]
     Missing(PathBuf),
     /// A folder has that name.
-    #[error("{}: is a folder; give the name of a file", .0.display())]
+    #[error("{}: this is a folder; give the name of a file", .0.display())]
     IsFolder(PathBuf),
     /// The folder to write into is not there.
     #[error("{}: cannot be written: there is no folder {}; create it first", path.display(), folder.display())]
@@ -75,10 +75,39 @@ pub fn read(path: &Path) -> Result<Vec<u8>, FileError> {
     Ok(bytes)
 }
 
-/// Writes a whole file: to a temporary one in the same folder, which then takes the target's name.
+/// Checks that a file could be written, so that what takes long is not begun in vain.
 ///
-/// A link is followed, and what is not a regular file (`/dev/null`, a pipe) is written to directly, for
-/// a rename would replace it.
+/// # Errors
+/// [`FileError`] where the target is a folder or its folder is absent.
+pub fn check_writable(path: &Path) -> Result<(), FileError> {
+    target(path).map(drop)
+}
+
+/// Where a write goes.
+enum Target {
+    /// To a file of this name in this folder, whole or not at all.
+    File(PathBuf, PathBuf),
+    /// To what is there and is no regular file (`/dev/null`, a pipe): a rename would replace it.
+    Device,
+}
+
+fn target(path: &Path) -> Result<Target, FileError> {
+    let file = match fs::metadata(path) {
+        Ok(there) if there.is_dir() => return Err(FileError::IsFolder(path.into())),
+        Ok(there) if !there.is_file() => return Ok(Target::Device),
+        // A link is followed.
+        Ok(_) => fs::canonicalize(path).map_err(|source| FileError::Write { path: path.into(), source })?,
+        Err(_) => path.to_path_buf(),
+    };
+    let folder = match file.parent() {
+        Some(parent) if parent.as_os_str().is_empty() => Path::new(".").to_path_buf(),
+        Some(parent) => parent.to_path_buf(),
+        None => return Err(FileError::IsFolder(path.into())),
+    };
+    if folder.is_dir() { Ok(Target::File(file, folder)) } else { Err(FileError::NoFolder { path: path.into(), folder }) }
+}
+
+/// Writes a whole file: to a temporary one in the same folder, which then takes the target's name.
 ///
 /// # Errors
 /// [`FileError`] where the target is a folder, its folder is absent, or the system refuses. The old file, if
@@ -88,24 +117,10 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
         path: path.into(),
         source,
     };
-    let target = match fs::metadata(path) {
-        Ok(there) if there.is_dir() => return Err(FileError::IsFolder(path.into())),
-        Ok(there) if !there.is_file() => return fs::write(path, bytes).map_err(refused),
-        Ok(_) => fs::canonicalize(path).map_err(refused)?,
-        Err(_) => path.to_path_buf(),
+    let (target, folder) = match target(path)? {
+        Target::File(file, folder) => (file, folder),
+        Target::Device => return fs::write(path, bytes).map_err(refused),
     };
-    let folder = match target.parent() {
-        Some(parent) if parent.as_os_str().is_empty() => Path::new("."),
-        Some(parent) => parent,
-        None => return Err(FileError::IsFolder(path.into())),
-    };
-    if !folder.is_dir() {
-        return Err(FileError::NoFolder {
-            path: path.into(),
-            folder: folder.into(),
-        });
-    }
-
     let mut builder = tempfile::Builder::new();
     builder.prefix(".intray-");
     #[cfg(unix)]

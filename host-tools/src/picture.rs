@@ -8,10 +8,13 @@ use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 /// The longest side of a picture, pixels.
-pub const MAX_SIDE: u32 = 1 << 15;
+pub const MAX_SIDE: u32 = 1 << 14;
 
 /// The most pixels in a picture: 8192 x 8192.
 pub const MAX_PIXELS: u64 = 1 << 26;
+
+/// Both, for a message.
+pub const SIZES: &str = "a picture has 1 to 16384 pixels a side, and at most 67108864 in all";
 
 /// What every PNG begins with.
 const PNG_SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
@@ -45,7 +48,7 @@ pub enum PictureError {
         reason: String,
     },
     /// Larger than [`MAX_SIDE`] or [`MAX_PIXELS`], or empty.
-    #[error("{}: {width} x {height} pixels; a side must be 1 to {MAX_SIDE}, the whole at most {MAX_PIXELS} pixels", path.display())]
+    #[error("{}: {width} x {height} pixels; {SIZES}", path.display())]
     Size {
         /// The file.
         path: PathBuf,
@@ -296,8 +299,9 @@ mod tests {
                 .is_err()
         );
         assert!(
-            size_is_allowed(1, 1) && size_is_allowed(8192, 8192) && size_is_allowed(MAX_SIDE, 2048)
+            size_is_allowed(1, 1) && size_is_allowed(8192, 8192) && size_is_allowed(MAX_SIDE, 4096)
         );
+        assert!(SIZES.contains(&format!("1 to {MAX_SIDE} pixels")) && SIZES.contains(&format!("most {MAX_PIXELS} in")));
         assert!(
             !size_is_allowed(0, 1)
                 && !size_is_allowed(8192, 8193)

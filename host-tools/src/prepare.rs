@@ -15,7 +15,7 @@ use thiserror::Error;
 
 use crate::grid::{Grid, GridError, Snapped};
 use crate::model::Model;
-use crate::tree::{self, Flat, TreeOptions};
+use crate::tree::{self, Tree, TreeOptions};
 
 /// How a scene is prepared.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -32,8 +32,8 @@ pub enum PrepareError {
     Grid(#[from] GridError),
     /// Nothing is left.
     #[error(
-        "all {triangles} triangles are degenerate on the {bits}-bit grid of {kernel}: nothing is left to render; \
-         {hint}"
+        "none of {triangles} triangles has an area on the {bits}-bit grid of {kernel}, so nothing is left to render; \
+         check the vertices, or bring the camera and the lights closer to them"
     )]
     AllDegenerate {
         /// How many there were.
@@ -42,8 +42,6 @@ pub enum PrepareError {
         bits: u32,
         /// The kernel's name.
         kernel: &'static str,
-        /// What would help.
-        hint: &'static str,
     },
     /// More triangles than a tree can refer to.
     #[error("the scene has {found} triangles, and a blob holds at most {most}")]
@@ -123,10 +121,9 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
             triangles: model.triangles.len(),
             bits: K::GRID_BITS,
             kernel: K::NAME,
-            hint: "check the model's vertices, or bring camera and lights closer to it",
         });
     }
-    let Flat { root, nodes, order, depth } =
+    let Tree { root, nodes, order, depth } =
         tree::build(ids.iter().map(|&id| Bounds::of(&snapped.corners(id))), options.tree);
     let ids: Vec<u32> = order.into_iter().map(|place| ids[place as usize]).collect();
     // Corners are on the grid and have area, and materials were counted: `triangle` has no reason left to refuse.

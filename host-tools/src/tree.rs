@@ -4,10 +4,7 @@
 //! an axis, and the split between bins with the least expected cost is taken. The tree never depends on the number of
 //! threads; its depth is bounded by splitting in the middle where the SAH would go on too long.
 
-mod flatten;
 mod split;
-
-pub use flatten::{Flat, FlatNode};
 
 use core_rt::bvh::Child;
 use core_rt::kernel::Bounds;
@@ -30,19 +27,26 @@ impl Default for TreeOptions {
     }
 }
 
-/// A subtree.
-#[derive(Debug)]
-enum Tree {
-    Leaf { first: u32, count: u32, bounds: Bounds },
-    Node { children: Box<[Tree; 2]>, bounds: Bounds },
+/// A node before a kernel packs it.
+#[derive(Clone, Copy, Debug)]
+pub struct Node {
+    /// The boxes of its children.
+    pub boxes: [Bounds; 2],
+    /// Its children, packed.
+    pub children: [u32; 2],
 }
 
-impl Tree {
-    const fn bounds(&self) -> Bounds {
-        match self {
-            Self::Leaf { bounds, .. } | Self::Node { bounds, .. } => *bounds,
-        }
-    }
+/// A tree as the blob has it.
+#[derive(Clone, Debug)]
+pub struct Tree {
+    /// The root, packed.
+    pub root: u32,
+    /// Nodes in preorder.
+    pub nodes: Vec<Node>,
+    /// Which triangle stands at each place.
+    pub order: Vec<u32>,
+    /// Levels of nodes.
+    pub depth: u8,
 }
 
 /// A triangle while the tree is built.
@@ -61,47 +65,81 @@ impl Item {
 
 /// Builds a tree over boxes, at least one and fewer than [`Child::INDEX_END`].
 #[must_use]
-pub fn build(boxes: impl Iterator<Item = Bounds>, options: TreeOptions) -> Flat {
+pub fn build(boxes: impl Iterator<Item = Bounds>, options: TreeOptions) -> Tree {
     let mut items: Vec<Item> = (0..).zip(boxes).map(|(index, bounds)| Item { bounds, index }).collect();
-    let tree = subtree(&mut items, 0, 0, options);
+    let mut nodes = Vec::new();
+    let root = subtree(&mut items, 0, 0, options, &mut nodes);
     let order = items.into_iter().map(|item| item.index).collect();
-    flatten::flatten(&tree, order)
+    Tree { root: root.packed, nodes, order, depth: root.levels }
 }
 
 /// Below this, threads cost more than they bring.
 const PARALLEL: usize = 4096;
 
-fn subtree(items: &mut [Item], first: u32, level: u32, options: TreeOptions) -> Tree {
+/// What a parent needs to know of a child.
+struct Subtree {
+    packed: u32,
+    bounds: Bounds,
+    /// Levels of nodes.
+    levels: u8,
+}
+
+/// Appends the nodes of a subtree over items that stand from `first` on. Recursion is at most [`MAX_DEPTH`] deep.
+fn subtree(items: &mut [Item], first: u32, level: u32, options: TreeOptions, nodes: &mut Vec<Node>) -> Subtree {
     let bounds = union(items.iter().map(|item| item.bounds));
-    let count = items.len() as u32;
-    let leaf = Tree::Leaf { first, count, bounds };
-    let leaf_max = options.leaf_max.clamp(1, Child::COUNT_MAX);
-    if count == 1 || (options.leaf_always && count <= leaf_max) {
-        return leaf;
-    }
-    // Splitting in the middle from here on ends within the levels that are left.
-    let levels_left = MAX_DEPTH as u32 - level;
-    let must_halve = count.div_ceil(leaf_max).next_power_of_two().ilog2() + 1 >= levels_left;
-    let split = if must_halve { None } else { split::best(items, &bounds, options) };
-    let middle = match split {
-        Some(split) if count > leaf_max || split.cost < f64::from(count) * options.triangle_cost => {
-            split::partition(items, &split)
-        }
-        _ if count <= leaf_max => return leaf,
-        // No split separates them, or there is no time left for one.
-        _ => items.len() / 2,
+    let Some(middle) = split(items, &bounds, level, options) else {
+        let leaf = Child::Leaf { first, count: items.len() as u32 };
+        return Subtree { packed: leaf.pack(), bounds, levels: 0 };
     };
+    let index = nodes.len();
+    nodes.push(Node { boxes: [bounds; 2], children: [0; 2] });
     let (left, right) = items.split_at_mut(middle);
     let right_first = first + middle as u32;
-    let (left_tree, right_tree) = if left.len().min(right.len()) > PARALLEL {
-        rayon::join(
-            || subtree(left, first, level + 1, options),
-            || subtree(right, right_first, level + 1, options),
-        )
+    let [a, b] = if left.len().min(right.len()) > PARALLEL {
+        let mut right_nodes = Vec::new();
+        let (a, b) = rayon::join(
+            || subtree(left, first, level + 1, options, nodes),
+            || subtree(right, right_first, level + 1, options, &mut right_nodes),
+        );
+        [a, append(b, right_nodes, nodes)]
     } else {
-        (subtree(left, first, level + 1, options), subtree(right, right_first, level + 1, options))
+        let a = subtree(left, first, level + 1, options, nodes);
+        [a, subtree(right, right_first, level + 1, options, nodes)]
     };
-    Tree::Node { children: Box::new([left_tree, right_tree]), bounds }
+    nodes[index] = Node { boxes: [a.bounds, b.bounds], children: [a.packed, b.packed] };
+    Subtree { packed: Child::Node(index as u32).pack(), bounds, levels: a.levels.max(b.levels) + 1 }
+}
+
+/// Moves a subtree that was numbered from 0 behind other nodes.
+fn append(subtree: Subtree, own: Vec<Node>, nodes: &mut Vec<Node>) -> Subtree {
+    let offset = nodes.len() as u32;
+    let moved = |packed: u32| match Child::unpack(packed) {
+        Child::Node(index) => Child::Node(index + offset).pack(),
+        leaf @ Child::Leaf { .. } => leaf.pack(),
+    };
+    nodes.extend(own.into_iter().map(|node| Node { children: node.children.map(moved), ..node }));
+    Subtree { packed: moved(subtree.packed), ..subtree }
+}
+
+/// Brings a node's left items before its right ones and returns where these begin, or `None` for a leaf.
+fn split(items: &mut [Item], bounds: &Bounds, level: u32, options: TreeOptions) -> Option<usize> {
+    let count = items.len() as u32;
+    let leaf_max = options.leaf_max.clamp(1, Child::COUNT_MAX);
+    let fits_leaf = count <= leaf_max;
+    if count == 1 || (fits_leaf && options.leaf_always) {
+        return None;
+    }
+    // Splitting in the middle from here on ends within the levels that are left.
+    let must_halve = count.div_ceil(leaf_max).next_power_of_two().ilog2() + 1 >= MAX_DEPTH as u32 - level;
+    let best = if must_halve { None } else { split::best(items, bounds, options) };
+    match best {
+        Some(best) if !fits_leaf || best.cost < f64::from(count) * options.triangle_cost => {
+            Some(split::partition(items, &best))
+        }
+        _ if fits_leaf => None,
+        // No split separates them, or there is no time left for one.
+        _ => Some(items.len() / 2),
+    }
 }
 
 /// The box of boxes; empty for none.

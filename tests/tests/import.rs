@@ -68,7 +68,7 @@ fn files_that_cannot_be_read_as_scenes_are_refused() {
         assert_eq!(error, format!("{}{expected}", path.display()));
     }
     let error = load(folder.path()).unwrap_err().to_string();
-    let expected = ": this is a directory; name the .toml or .obj file in it";
+    let expected = ": this is a folder; name the .toml or .obj file in it";
     assert_eq!(error, format!("{}{expected}", folder.path().display()));
 }
 

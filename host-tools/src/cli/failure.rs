@@ -1,5 +1,7 @@
 //! How a command fails: one message, one exit status.
 
+use std::fmt::Display;
+use std::io::Write;
 use std::process::ExitCode;
 
 /// A message for a person, and the status that the process ends with.
@@ -17,9 +19,19 @@ impl Failure {
 
     /// Prints the message.
     pub(super) fn report(&self) -> ExitCode {
-        eprintln!("error: {}", self.message);
+        message("error", &self.message);
         ExitCode::from(self.status)
     }
+}
+
+/// Says on stderr what will not be seen as it was meant.
+pub(super) fn warn(warning: impl Display) {
+    message("warning", warning);
+}
+
+fn message(kind: &str, text: impl Display) {
+    // Where nobody reads it (`2>&1 | head`), the exit status still tells; `eprintln` would panic.
+    let _ = writeln!(std::io::stderr(), "{kind}: {text}");
 }
 
 /// Errors of the library are about what was given.

@@ -1,18 +1,19 @@
 //! What the verbs share: scenes, kernels, sizes, threads.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use core_rt::blob::MAGIC;
+use core_rt::blob::{BlobError, Prefix};
 use core_rt::bvh::Child;
 
-use super::failure::Failure;
+use super::failure::{Failure, warn};
 use crate::engine::{self, ENGINES, Engine};
 use crate::files;
 use crate::import::{self, Imported};
 use crate::model::Model;
-use crate::picture::size_is_allowed;
+use crate::picture::{SIZES, size_is_allowed};
 use crate::prepare::{Blob, Degenerates, Options};
 use crate::tree::TreeOptions;
 
@@ -27,11 +28,16 @@ pub(super) struct SceneArguments {
     pub(super) kernel: Option<String>,
 
     /// The picture's size in pixels, instead of the scene's
-    #[arg(long, value_name = "WxH", value_parser = size)]
+    #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true)]
     pub(super) size: Option<[u32; 2]>,
 
     /// Make leaves of so many triangles or fewer, without weighing their cost
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(Child::COUNT_MAX)))]
+    #[arg(
+        long,
+        value_name = "N",
+        value_parser = clap::value_parser!(u32).range(1..=i64::from(Child::COUNT_MAX)),
+        allow_negative_numbers = true
+    )]
     pub(super) leaf: Option<u32>,
 }
 
@@ -46,7 +52,11 @@ pub(super) struct Scene {
 impl SceneArguments {
     /// Reads the scene and prepares it. Warnings go to stderr.
     pub(super) fn load(&self) -> Result<Scene, Failure> {
-        if is_blob(&self.scene)? { self.load_blob() } else { self.load_model() }
+        let extension = self.scene.extension().map(|extension| extension.to_ascii_lowercase());
+        match extension.as_deref().and_then(OsStr::to_str) {
+            Some("obj" | "toml") => self.load_model(),
+            _ => self.load_blob(),
+        }
     }
 
     /// Reads and prepares a model for the kernel asked for.
@@ -67,20 +77,36 @@ impl SceneArguments {
     fn load_blob(&self) -> Result<Scene, Failure> {
         let path = self.scene.display();
         let blob = Blob::from_bytes(&files::read(&self.scene)?);
-        let refuse = |error| Failure::input(format!("{path}: {error}; make it anew with `intray prep`"));
-        let engine = engine::of_blob(blob.bytes()).map_err(refuse)?;
+        let refuse = |error| match error {
+            BlobError::Foreign => Failure::input(format!(
+                "{path}: not a scene; that is a .toml or .obj file by its name, or a blob that `intray prep` made"
+            )),
+            _ => Failure::input(format!("{path}: {error}; make it anew with `intray prep`")),
+        };
+        let number = Prefix::read(blob.bytes()).map_err(refuse)?.kernel;
+        let engine = engine::by_id(number).ok_or_else(|| {
+            let known = ENGINES.map(|engine| format!("{} ({})", engine.name(), engine.id())).join(" and ");
+            Failure::input(format!(
+                "{path}: the blob is for a kernel of number {number}, and this program has {known}; make it anew with \
+                 `intray prep`"
+            ))
+        })?;
         if let Some(asked) = self.engine().filter(|asked| asked.id() != engine.id()) {
             return Err(Failure::input(format!(
-                "{path} is a blob for {}, not for {}; leave out --kernel, or give the scene it was made from",
+                "{path}: the blob is for {}, not for {}; leave out --kernel, or give the scene it was made from",
                 engine.name(),
                 asked.name()
             )));
         }
         let (header, _) = engine.inspect(blob.bytes()).map_err(refuse)?;
         let own = header.size.map(u32::from);
+        if !size_is_allowed(own[0], own[1]) {
+            return Err(Failure::input(format!("{path}: the blob is for {}x{} pixels; {SIZES}", own[0], own[1])));
+        }
         if self.leaf.is_some() || self.size.is_some_and(|size| size != own) {
             return Err(Failure::input(format!(
-                "{path} is a blob for {}x{} pixels, and its tree is built: --size and --leaf need the scene it was made from",
+                "{path}: the blob is for {}x{} pixels, and its tree is built; --size and --leaf need the scene that it was \
+                 made from",
                 own[0], own[1]
             )));
         }
@@ -102,48 +128,28 @@ impl SceneArguments {
 /// Imports a scene.toml or an OBJ; warnings go to stderr.
 fn model(path: &Path) -> Result<Model, Failure> {
     let Imported { model, warnings } = import::load(path)?;
-    for warning in &warnings {
-        eprintln!("warning: {warning}");
-    }
+    warnings.iter().for_each(warn);
     Ok(model)
 }
 
 fn warn_of_degenerates(degenerates: Degenerates, triangles: usize) {
     if degenerates.total() > 0 {
-        eprintln!(
-            "warning: {} of {triangles} triangles have no area on the grid and were left out ({} with two corners in one \
+        warn(format_args!(
+            "{} of {triangles} triangles have no area on the grid and were left out ({} with two corners in one \
              point, {} with all three in a line)",
             degenerates.total(),
             degenerates.zero_edge,
             degenerates.zero_area
-        );
+        ));
     }
-}
-
-/// Whether a file begins as a blob does. One with a scene's extension is a scene, so that its errors are a scene's.
-fn is_blob(path: &Path) -> Result<bool, Failure> {
-    let extension = path.extension().map(|e| e.to_ascii_lowercase());
-    if extension.is_some_and(|e| e == "obj" || e == "toml") {
-        return Ok(false);
-    }
-    let mut start = Vec::new();
-    let opened = std::fs::File::open(path);
-    if let Ok(file) = opened {
-        // A folder opens and does not read; the importer says what it is.
-        let _ = std::io::Read::read_to_end(&mut std::io::Read::take(file, MAGIC.len() as u64), &mut start);
-    }
-    Ok(!start.is_empty() && MAGIC.starts_with(&start))
 }
 
 /// `WxH`.
 fn size(text: &str) -> Result<[u32; 2], String> {
-    let sides = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.trim().parse().ok()?, h.trim().parse().ok()?)));
-    match sides {
-        Some((width, height)) if width > 0 && height > 0 && size_is_allowed(width, height) && width.max(height) <= 16_384 => {
-            Ok([width, height])
-        }
-        Some((0, _) | (_, 0)) => Err("a picture has at least one pixel each way".into()),
-        Some(_) => Err("a picture has at most 16384 pixels a side and 2^26 in all".into()),
-        None => Err("expected WIDTHxHEIGHT in pixels, such as 640x480".into()),
-    }
+    let sides = text.split_once(['x', 'X']).and_then(|(w, h)| Some([w.trim().parse().ok()?, h.trim().parse().ok()?]));
+    let Some::<[i64; 2]>(sides) = sides else {
+        return Err("expected WIDTHxHEIGHT in pixels, such as 640x480".into());
+    };
+    let size = sides.map(|side| u32::try_from(side).unwrap_or(0));
+    if size_is_allowed(size[0], size[1]) { Ok(size) } else { Err(SIZES.into()) }
 }

@@ -19,6 +19,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    files::check_writable(&arguments.output)?;
     let scene = arguments.scene.load()?;
     files::write_atomically(&arguments.output, scene.blob.bytes())?;
     let (header, _) = scene.engine.inspect(scene.blob.bytes())?;

@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::failure::Failure;
 use super::input::{Scene, SceneArguments};
 use super::{output, progress};
+use crate::files;
 use crate::render::Rendered;
 
 /// Tiles that threads take turns at. Small enough to share the work, large enough to be worth it.
@@ -24,7 +25,12 @@ pub(super) struct Arguments {
     output: PathBuf,
 
     /// Threads [default: one a core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(
+        long,
+        value_name = "N",
+        value_parser = clap::value_parser!(u16).range(1..=1024),
+        allow_negative_numbers = true
+    )]
     threads: Option<u16>,
 
     /// Print one JSON object
@@ -55,6 +61,7 @@ struct Rays {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    files::check_writable(&arguments.output)?;
     let scene = arguments.scene.load()?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.unwrap_or(0).into()).build()?;
     let begin = Instant::now();

@@ -159,7 +159,11 @@ fn explain(message: &str) -> String {
         "invalid type: map, expected a sequence" => {
             return "there may be several of these; double the brackets, such as [[light]]".into();
         }
-        _ => return message.split_whitespace().collect::<Vec<_>>().join(" "),
+        _ => {
+            // Serde's words for what TOML calls otherwise.
+            let message = message.replace("a sequence", "an array").replace("a map", "a table").replace(" as i128", "");
+            return message.split_whitespace().collect::<Vec<_>>().join(" ");
+        }
     };
     let given = quoted.next().unwrap_or_default();
     let nearest = quoted.min_by_key(|known| strsim::damerau_levenshtein(given, known));
@@ -215,11 +219,11 @@ mod tests {
             ),
             (
                 "[camera]\nposition = [0, 1]",
-                "2: three numbers are needed, such as [0, 1, 5]; got 2",
+                "2: invalid length 2, expected three numbers such as [0, 1, 5]",
             ),
             (
                 "[camera]\nup = [0, 1, 0, 0]",
-                "2: three numbers are needed, such as [0, 1, 5]; got 4",
+                "2: invalid length 4, expected three numbers such as [0, 1, 5]",
             ),
             (
                 "[camera]\nfov_y = '40'",

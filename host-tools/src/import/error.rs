@@ -123,7 +123,7 @@ pub(super) fn reason(error: &io::Error) -> String {
     match error.kind() {
         io::ErrorKind::NotFound => "no such file".into(),
         io::ErrorKind::IsADirectory => {
-            "this is a directory; name the .toml or .obj file in it".into()
+            "this is a folder; name the .toml or .obj file in it".into()
         }
         io::ErrorKind::PermissionDenied => "permission denied".into(),
         _ => error.to_string(),

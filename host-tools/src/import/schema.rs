@@ -8,7 +8,7 @@ use std::fmt;
 
 use glam::DVec3;
 use serde::Deserialize;
-use serde::de::{Deserializer, Error, IgnoredAny, Visitor};
+use serde::de::{Deserializer, Error, IgnoredAny, SeqAccess, Visitor};
 use toml::Spanned;
 
 /// A whole file.
@@ -182,20 +182,28 @@ impl<'de> Deserialize<'de> for Number {
 }
 
 /// Three finite numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(try_from = "Vec<Number>")]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Vector(pub DVec3);
 
-impl TryFrom<Vec<Number>> for Vector {
-    type Error = String;
-
-    fn try_from(numbers: Vec<Number>) -> Result<Self, String> {
-        match numbers[..] {
-            [x, y, z] => Ok(Self(DVec3::new(x.0, y.0, z.0))),
-            _ => Err(format!(
-                "three numbers are needed, such as [0, 1, 5]; got {}",
-                numbers.len()
-            )),
+impl<'de> Deserialize<'de> for Vector {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct VectorVisitor;
+        impl<'de> Visitor<'de> for VectorVisitor {
+            type Value = Vector;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("three numbers such as [0, 1, 5]")
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut sequence: A) -> Result<Vector, A::Error> {
+                let mut numbers = Vec::new();
+                while let Some(Number(number)) = sequence.next_element()? {
+                    numbers.push(number);
+                }
+                match numbers[..] {
+                    [x, y, z] => Ok(Vector(DVec3::new(x, y, z))),
+                    _ => Err(A::Error::invalid_length(numbers.len(), &self)),
+                }
+            }
         }
+        deserializer.deserialize_any(VectorVisitor)
     }
 }

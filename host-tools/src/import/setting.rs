@@ -8,13 +8,10 @@ use super::document::Document;
 use super::error::{ImportError, Warning};
 use super::schema::{FalloffToml, LightKindToml, LightToml, Number, TransferToml};
 use crate::model::{Camera, Light, LightKind, RenderSettings, Transfer};
+use crate::picture::{SIZES, size_is_allowed};
 
 /// Picture size where none is given, pixels.
 const SIZE: [u32; 2] = [640, 480];
-/// The longest side of a picture, pixels.
-const LONGEST_SIDE: f64 = 16384.0;
-/// The most pixels of a picture.
-const MOST_PIXELS: f64 = (1u32 << 28) as f64;
 
 impl Document {
     /// The lights; where there are none, a white one at the camera.
@@ -118,16 +115,14 @@ impl Document {
     }
 
     fn size(&self, size: &Spanned<Vec<Number>>) -> Result<[u32; 2], ImportError> {
-        let side = |n: Number| n.0 >= 1.0 && n.0 <= LONGEST_SIDE && n.0.fract() == 0.0;
-        match size.get_ref()[..] {
-            [width, height] if side(width) && side(height) && width.0 * height.0 <= MOST_PIXELS => {
-                Ok([width.0 as u32, height.0 as u32])
-            }
+        // Casting saturates: what is no size stays none.
+        let sides: Vec<u32> =
+            size.get_ref().iter().map(|side| if side.0.fract() == 0.0 { side.0 as u32 } else { 0 }).collect();
+        match sides[..] {
+            [width, height] if size_is_allowed(width, height) => Ok([width, height]),
             _ => {
-                let message = format!(
-                    "size must be a width and a height in pixels, such as [640, 480], each a \
-                     whole number from 1 to {LONGEST_SIDE}, and at most {MOST_PIXELS} pixels in all"
-                );
+                let message =
+                    format!("size must be a width and a height in whole pixels, such as [640, 480]; {SIZES}");
                 Err(self.error(size.span(), message))
             }
         }
@@ -181,14 +176,15 @@ mod tests {
 
     #[test]
     fn a_picture_that_cannot_be_is_refused() {
-        let size = "3: size must be a width and a height in pixels, such as [640, 480], each a \
-                    whole number from 1 to 16384, and at most 268435456 pixels in all";
+        let size = "3: size must be a width and a height in whole pixels, such as [640, 480]; a picture \
+                    has 1 to 16384 pixels a side, and at most 67108864 in all";
         refused(&[
             ("[render]\nsize = [0, 480]", size),
             ("[render]\nsize = [640, -480]", size),
             ("[render]\nsize = [640.5, 480]", size),
             ("[render]\nsize = [16385, 1]", size),
             ("[render]\nsize = [640]", size),
+            ("[render]\nsize = [8192, 8193]", size),
             (
                 "[render]\nsamples = 0",
                 "3: samples of 0; it must be a whole number from 1",
@@ -210,7 +206,7 @@ mod tests {
                 "3: background [0, -1, 0] is out of range; each channel is from 0 to 1e30",
             ),
         ]);
-        for size in [[16384, 16384], [1, 1]] {
+        for size in [[16384, 4096], [1, 1]] {
             let model = room(&format!("[render]\nsize = {size:?}")).unwrap().model;
             assert_eq!(model.render.size, size);
         }
