@@ -6,6 +6,7 @@ pub mod meshes;
 pub mod oracle;
 pub mod random;
 pub mod rays;
+pub mod scenes;
 pub mod shared;
 
 /// How much more the long run does: 10 with `INTRAY_LONG` set, else 1.

@@ -1,0 +1,109 @@
+//! Small scenes for goldens: each asks for something that the others do not.
+
+use glam::DVec3;
+use host_tools::builtin;
+use host_tools::import::{self, Embedded};
+use host_tools::model::{Camera, Light, LightKind, Material, Model, RenderSettings, Transfer, Triangle};
+
+use crate::meshes;
+
+/// Name and scene, at golden size.
+///
+/// # Panics
+/// If the built-in scene does not import.
+#[must_use]
+pub fn all() -> Vec<(&'static str, Model)> {
+    let mut demo = import::load_from(&Embedded(builtin::FILES), "scene.toml").expect("the built-in scene").model;
+    demo.render.size = [160, 120];
+    vec![
+        ("demo", demo),
+        ("flat", flat()),
+        ("sun", sun()),
+        ("several-lights", several_lights()),
+        ("linear", linear()),
+        ("one-triangle", one_triangle()),
+        ("inside", inside(32)),
+    ]
+}
+
+fn white() -> Material {
+    Material { name: "white".into(), diffuse: DVec3::ONE, emission: DVec3::ZERO }
+}
+
+/// A mesh of the oracle's kind, seen and lit from outside.
+fn of(mesh: &[[[i64; 3]; 3]], size: [u32; 2]) -> Model {
+    let positions: Vec<DVec3> =
+        mesh.iter().flatten().map(|v| DVec3::from_array(v.map(|c| c as f64)) / 1024.0).collect();
+    let triangles = (0..mesh.len() as u32)
+        .map(|i| Triangle { vertices: [3 * i, 3 * i + 1, 3 * i + 2], normals: None, material: 0 })
+        .collect();
+    let centre = DVec3::splat(0.5);
+    let eye = DVec3::new(1.4, 1.2, 2.3);
+    Model {
+        positions,
+        normals: Vec::new(),
+        triangles,
+        materials: vec![white()],
+        lights: vec![Light { kind: LightKind::Point(DVec3::new(0.2, 2.0, 1.8)), radiance: DVec3::ONE }],
+        camera: Camera { position: eye, look_at: centre, up: DVec3::Y, fov_y: 0.6 },
+        background: DVec3::new(0.05, 0.1, 0.2),
+        render: RenderSettings { size, ambient: DVec3::ZERO, transfer: Transfer::Srgb },
+    }
+}
+
+fn flat() -> Model {
+    of(&meshes::heightfield(10, 12, 3), [96, 64])
+}
+
+/// Directional light and ambient light; a sphere that shades itself.
+fn sun() -> Model {
+    let mut model = of(&meshes::sphere(10, 6), [96, 64]);
+    model.lights = vec![Light {
+        kind: LightKind::Directional(DVec3::new(-1.0, -2.0, -0.5)),
+        radiance: DVec3::new(1.0, 0.9, 0.7),
+    }];
+    model.render.ambient = DVec3::splat(0.05);
+    model
+}
+
+/// Both kinds of light, intensities over one, emission, three materials.
+fn several_lights() -> Model {
+    let mut model = of(&meshes::cuboid([100, 100, 100], [900, 700, 800]), [96, 64]);
+    model.materials = vec![
+        white(),
+        Material { name: "red".into(), diffuse: DVec3::new(0.8, 0.1, 0.05), emission: DVec3::ZERO },
+        Material { name: "glow".into(), diffuse: DVec3::ZERO, emission: DVec3::new(0.0, 0.3, 0.6) },
+    ];
+    for (i, triangle) in (0..).zip(&mut model.triangles) {
+        triangle.material = i % 3;
+    }
+    model.lights.push(Light { kind: LightKind::Point(DVec3::new(2.0, 0.5, 0.5)), radiance: DVec3::splat(0.25) });
+    model.lights.push(Light {
+        kind: LightKind::Directional(DVec3::new(0.0, 0.0, -1.0)),
+        radiance: DVec3::new(0.0, 3.0, 0.0),
+    });
+    model
+}
+
+fn linear() -> Model {
+    let mut model = of(&meshes::staircase(10, 9), [96, 64]);
+    model.render.transfer = Transfer::Linear;
+    model
+}
+
+/// A tree that is one leaf.
+fn one_triangle() -> Model {
+    of(&[[[0, 0, 0], [1023, 0, 300], [200, 1023, 500]]], [64, 48])
+}
+
+/// The inside of a closed sphere of about `2 n^2` triangles: wherever the background is seen is a hole.
+#[must_use]
+pub fn inside(n: i64) -> Model {
+    let mut model = of(&meshes::sphere(10, n), [96, 64]);
+    model.camera.position = DVec3::splat(0.5);
+    model.camera.look_at = DVec3::new(0.9, 0.6, 0.2);
+    model.camera.fov_y = 1.9;
+    model.background = DVec3::new(1.0, 0.0, 1.0);
+    model.lights[0].kind = LightKind::Point(DVec3::splat(0.45));
+    model
+}
