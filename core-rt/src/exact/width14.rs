@@ -110,8 +110,8 @@ impl Width for Width14 {
         ((scaled(numerator, bits) as u32 >> 3) * r.mantissa >> 15) as i32
     }
 
-    /// Low by less than 2^-14 + 2^-14 of its value, and never high: the sum of two weights never exceeds 1 by more than
-    /// the truncation of the denominator, 2^-15 of them, which the format's floor takes off again.
+    /// Within 4 units of 2^-14: the reciprocal is low by one in 2^14, the denominator's truncation makes it high by one in
+    /// 2^15, the numerator's is less than two units of 2^-15, and the floor is one.
     #[inline]
     fn fraction(numerator: i64, denominator: i64) -> <Grid14 as Space>::Fraction {
         let bits = i64::BITS - denominator.leading_zeros();
