@@ -146,7 +146,7 @@ mod tests {
     #[test]
     fn reflection_is_low_by_less_than_a_unit_and_white_gives_back_all() {
         for light in [0, 1, 0xffff, 0x1_0000, 0x1_2345, 0xffff_ffff] {
-            assert_eq!(gray(light).reflected(&[u16::MAX; 3]), if light & 1 == 0 { gray(light) } else { gray(light) });
+            assert_eq!(gray(light).reflected(&[u16::MAX; 3]), gray(light));
             for albedo in [0u16, 1, 0x7fff, 0x8000, 0xfffe] {
                 let albedo_q16 = u64::from(albedo) + u64::from(albedo >> 15);
                 let exact = (u64::from(light) * albedo_q16) >> 16;

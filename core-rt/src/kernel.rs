@@ -45,7 +45,8 @@ impl Bounds {
     /// The box of two boxes.
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
-        let pick = |f: fn(i32, i32) -> i32, a: Triple<i32>, b: Triple<i32>| [f(a[0], b[0]), f(a[1], b[1]), f(a[2], b[2])];
+        let pick =
+            |f: fn(i32, i32) -> i32, a: Triple<i32>, b: Triple<i32>| [f(a[0], b[0]), f(a[1], b[1]), f(a[2], b[2])];
         Self { low: pick(i32::min, self.low, other.low), high: pick(i32::max, self.high, other.high) }
     }
 
@@ -128,11 +129,7 @@ pub trait Kernel: Copy + Debug + Default + Send + Sync + 'static {
     /// The open segment from a surface (moved off it, on the normal's side) to a grid point.
     fn segment(from: &Surface<Self::Space>, to: Triple<i32>, skip: u32) -> Option<Self::Ray>;
     /// The ray from a surface (moved off it, on the normal's side) in a direction.
-    fn leaving(
-        from: &Surface<Self::Space>,
-        direction: <Self::Space as Space>::Unit,
-        skip: u32,
-    ) -> Option<Self::Ray>;
+    fn leaving(from: &Surface<Self::Space>, direction: <Self::Space as Space>::Unit, skip: u32) -> Option<Self::Ray>;
 
     /// The primitive that a ray starts on, or [`NONE`].
     fn skip(ray: &Self::Ray) -> u32;

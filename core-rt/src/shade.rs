@@ -79,8 +79,8 @@ fn direct<P: Profile>(
     stack: &mut Stack<P::Kernel>,
     stats: &mut impl Stats,
 ) -> Option<ColourOf<P>> {
-    let point_light = P::NEEDS.has(Need::PointLight)
-        && (!P::NEEDS.has(Need::DirectionalLight) || light.kind == Light::POINT);
+    let point_light =
+        P::NEEDS.has(Need::PointLight) && (!P::NEEDS.has(Need::DirectionalLight) || light.kind == Light::POINT);
     let towards = if point_light {
         SpaceOf::<P>::towards(surface.point, SpaceOf::<P>::point(light.place))?
     } else {

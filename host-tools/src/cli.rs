@@ -5,8 +5,8 @@
 mod compare;
 mod demo;
 mod failure;
-mod inspect;
 mod input;
+mod inspect;
 mod output;
 mod prep;
 mod progress;

@@ -56,19 +56,14 @@ pub fn read(path: &Path) -> Result<Vec<u8>, FileError> {
     let refused = |source: io::Error| match source.kind() {
         io::ErrorKind::NotFound => FileError::Missing(path.into()),
         io::ErrorKind::IsADirectory => FileError::IsFolder(path.into()),
-        _ => FileError::Read {
-            path: path.into(),
-            source,
-        },
+        _ => FileError::Read { path: path.into(), source },
     };
     if path.is_dir() {
         return Err(FileError::IsFolder(path.into()));
     }
     let mut bytes = Vec::new();
     // The length is counted and not asked for: a device or a pipe has none.
-    File::open(path)
-        .and_then(|file| file.take(MOST_BYTES + 1).read_to_end(&mut bytes))
-        .map_err(refused)?;
+    File::open(path).and_then(|file| file.take(MOST_BYTES + 1).read_to_end(&mut bytes)).map_err(refused)?;
     if bytes.len() as u64 > MOST_BYTES {
         return Err(FileError::TooLarge(path.into()));
     }
@@ -104,7 +99,11 @@ fn target(path: &Path) -> Result<Target, FileError> {
         Some(parent) => parent.to_path_buf(),
         None => return Err(FileError::IsFolder(path.into())),
     };
-    if folder.is_dir() { Ok(Target::File(file, folder)) } else { Err(FileError::NoFolder { path: path.into(), folder }) }
+    if folder.is_dir() {
+        Ok(Target::File(file, folder))
+    } else {
+        Err(FileError::NoFolder { path: path.into(), folder })
+    }
 }
 
 /// Writes a whole file: to a temporary one in the same folder, which then takes the target's name.
@@ -113,10 +112,7 @@ fn target(path: &Path) -> Result<Target, FileError> {
 /// [`FileError`] where the target is a folder, its folder is absent, or the system refuses. The old file, if
 /// there was one, is then as it was.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
-    let refused = |source: io::Error| FileError::Write {
-        path: path.into(),
-        source,
-    };
+    let refused = |source: io::Error| FileError::Write { path: path.into(), source };
     let (target, folder) = match target(path)? {
         Target::File(file, folder) => (file, folder),
         Target::Device => return fs::write(path, bytes).map_err(refused),
@@ -133,8 +129,7 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     file.write_all(bytes).map_err(refused)?;
     // The name must not reach the disk before the bytes do.
     file.as_file().sync_all().map_err(refused)?;
-    file.persist(&target)
-        .map_err(|error| refused(error.error))?;
+    file.persist(&target).map_err(|error| refused(error.error))?;
     Ok(())
 }
 
@@ -143,10 +138,8 @@ mod tests {
     use super::*;
 
     fn names(folder: &Path) -> Vec<String> {
-        let mut names: Vec<_> = fs::read_dir(folder)
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .collect();
+        let mut names: Vec<_> =
+            fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
         names.sort();
         names
     }
@@ -171,10 +164,7 @@ mod tests {
         assert!(message(read(folder.path()).map(drop)).contains("is a folder"));
         assert!(message(write_atomically(folder.path(), b"x")).contains("is a folder"));
         let absent = message(write_atomically(&inside("no/such/a.png"), b"x"));
-        assert!(
-            absent.contains("there is no folder") && absent.contains("create it first"),
-            "{absent}"
-        );
+        assert!(absent.contains("there is no folder") && absent.contains("create it first"), "{absent}");
         assert_eq!(names(folder.path()), [""; 0]);
     }
 
@@ -191,21 +181,12 @@ mod tests {
         assert_eq!(fs::read(&file).unwrap(), b"new");
 
         write_atomically(Path::new("/dev/null"), b"x").unwrap();
-        assert!(
-            fs::metadata("/dev/null")
-                .unwrap()
-                .file_type()
-                .is_char_device()
-        );
+        assert!(fs::metadata("/dev/null").unwrap().file_type().is_char_device());
         assert!(matches!(read(Path::new("/dev/null")), Ok(empty) if empty.is_empty()));
 
         let plain = folder.path().join("plain");
         fs::write(&plain, b"x").unwrap();
         let mode = |path| fs::metadata(path).unwrap().permissions().mode();
-        assert_eq!(
-            mode(&file),
-            mode(&plain),
-            "as open to others as any new file"
-        );
+        assert_eq!(mode(&file), mode(&plain), "as open to others as any new file");
     }
 }

@@ -1,9 +1,7 @@
 //! Pictures: RGB888 in memory, PNG on disk.
 
 use crate::files::{self, FileError};
-use image::{
-    ExtendedColorType, ImageEncoder, ImageFormat, ImageReader, Limits, codecs::png::PngEncoder,
-};
+use image::{ExtendedColorType, ImageEncoder, ImageFormat, ImageReader, Limits, codecs::png::PngEncoder};
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
@@ -68,19 +66,12 @@ pub const fn size_is_allowed(width: u32, height: u32) -> bool {
 impl Picture {
     /// A black picture of `width` x `height` pixels.
     pub fn new(width: u32, height: u32) -> Self {
-        Self {
-            width,
-            height,
-            rgb: vec![[0; 3]; width as usize * height as usize],
-        }
+        Self { width, height, rgb: vec![[0; 3]; width as usize * height as usize] }
     }
 
     /// The picture whose pixel in column `x` and row `y` is `pixel(x, y)`, asked for row by row.
     pub fn from_fn(width: u32, height: u32, mut pixel: impl FnMut(u32, u32) -> [u8; 3]) -> Self {
-        let rgb = (0..height)
-            .flat_map(|y| (0..width).map(move |x| (x, y)))
-            .map(|(x, y)| pixel(x, y))
-            .collect();
+        let rgb = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| pixel(x, y)).collect();
         Self { width, height, rgb }
     }
 
@@ -119,19 +110,12 @@ impl Picture {
         if !bytes.starts_with(PNG_SIGNATURE) {
             return Err(PictureError::NotPng(path.into()));
         }
-        let damaged = |error: image::ImageError| PictureError::Damaged {
-            path: path.into(),
-            reason: error.to_string(),
-        };
+        let damaged = |error: image::ImageError| PictureError::Damaged { path: path.into(), reason: error.to_string() };
         // The claimed size, from its place in the header, before the decoder allocates for it.
         if let [_, _, _, _, width, height, ..] = bytes.as_chunks().0 {
             let (width, height) = (u32::from_be_bytes(*width), u32::from_be_bytes(*height));
             if !size_is_allowed(width, height) {
-                return Err(PictureError::Size {
-                    path: path.into(),
-                    width,
-                    height,
-                });
+                return Err(PictureError::Size { path: path.into(), width, height });
             }
         }
         // Twice what the largest picture takes at 16 bits and four channels.
@@ -141,11 +125,7 @@ impl Picture {
         decoder.limits(limits);
         let decoded = decoder.decode().map_err(damaged)?.into_rgb8();
         let (width, height) = decoded.dimensions();
-        Ok(Self {
-            width,
-            height,
-            rgb: decoded.as_raw().as_chunks().0.to_vec(),
-        })
+        Ok(Self { width, height, rgb: decoded.as_raw().as_chunks().0.to_vec() })
     }
 
     /// Writes an 8-bit RGB PNG, whole or not at all.
@@ -154,22 +134,13 @@ impl Picture {
     /// [`PictureError`] where the folder does not exist or cannot be written to, or the size is not allowed.
     pub fn write_png(&self, path: &Path) -> Result<(), PictureError> {
         let (width, height) = (self.width, self.height);
-        let refused = PictureError::Size {
-            path: path.into(),
-            width,
-            height,
-        };
+        let refused = PictureError::Size { path: path.into(), width, height };
         if !size_is_allowed(width, height) {
             return Err(refused);
         }
         let mut bytes = Vec::new();
         PngEncoder::new(&mut bytes)
-            .write_image(
-                self.rgb.as_flattened(),
-                width,
-                height,
-                ExtendedColorType::Rgb8,
-            )
+            .write_image(self.rgb.as_flattened(), width, height, ExtendedColorType::Rgb8)
             .map_err(|_| refused)?;
         Ok(files::write_atomically(path, &bytes)?)
     }
@@ -187,9 +158,7 @@ mod tests {
 
     fn png(bytes: &[u8], width: u32, height: u32, colour: ColorType) -> Vec<u8> {
         let mut png = Vec::new();
-        PngEncoder::new(&mut png)
-            .write_image(bytes, width, height, colour.into())
-            .unwrap();
+        PngEncoder::new(&mut png).write_image(bytes, width, height, colour.into()).unwrap();
         png
     }
 
@@ -210,9 +179,7 @@ mod tests {
     #[test]
     fn the_checksum_is_the_catalogued_one() {
         // "123456789", the check value of CRC-32/ISO-HDLC; then one bit more.
-        let mut picture = Picture::from_fn(3, 1, |x, _| {
-            [0x31, 0x32, 0x33].map(|byte| byte + 3 * x as u8)
-        });
+        let mut picture = Picture::from_fn(3, 1, |x, _| [0x31, 0x32, 0x33].map(|byte| byte + 3 * x as u8));
         assert_eq!(picture.crc32(), 0xcbf4_3926);
         picture.pixels_mut()[2][2] ^= 1;
         assert_ne!(picture.crc32(), 0xcbf4_3926);
@@ -220,17 +187,13 @@ mod tests {
 
     #[test]
     fn every_colour_type_is_read_as_rgb() {
-        let pixels =
-            |bytes: &[u8], colour| read(&png(bytes, 1, 1, colour)).unwrap().pixels().to_vec();
+        let pixels = |bytes: &[u8], colour| read(&png(bytes, 1, 1, colour)).unwrap().pixels().to_vec();
         assert_eq!(pixels(&[9], ColorType::L8), [[9; 3]]);
         assert_eq!(pixels(&[9, 0], ColorType::La8), [[9; 3]]);
         assert_eq!(pixels(&[1, 2, 3], ColorType::Rgb8), [[1, 2, 3]]);
         assert_eq!(pixels(&[1, 2, 3, 0], ColorType::Rgba8), [[1, 2, 3]]);
         // 16 bits are rounded: 1.5 * 257 lies between 385 and 386. Samples in native byte order.
-        let wide: Vec<u8> = [385u16, 386, 65535]
-            .iter()
-            .flat_map(|sample| sample.to_ne_bytes())
-            .collect();
+        let wide: Vec<u8> = [385u16, 386, 65535].iter().flat_map(|sample| sample.to_ne_bytes()).collect();
         assert_eq!(pixels(&wide, ColorType::Rgb16), [[1, 2, 255]]);
         assert_eq!(pixels(&wide[2..4], ColorType::L16), [[2; 3]]);
     }
@@ -242,43 +205,18 @@ mod tests {
         // The last 16 bytes are a checksum and the end mark; the picture is complete before them.
         for length in 0..whole.len() - 16 {
             let message = read(&whole[..length]).unwrap_err().to_string();
-            let expected = if length < 8 {
-                "not a PNG"
-            } else {
-                "damaged or cut short"
-            };
+            let expected = if length < 8 { "not a PNG" } else { "damaged or cut short" };
             assert!(message.contains(expected), "{length}: {message}");
         }
     }
 
     #[test]
     fn what_is_not_a_picture_is_named() {
-        assert!(
-            read(b"P6 1 1 255 abc")
-                .unwrap_err()
-                .to_string()
-                .contains("not a PNG")
-        );
-        assert!(
-            Picture::read_png(Path::new("no/such.png"))
-                .unwrap_err()
-                .to_string()
-                .contains("no such file")
-        );
-        assert!(
-            Picture::read_png(Path::new("."))
-                .unwrap_err()
-                .to_string()
-                .contains("is a folder")
-        );
-        let unwritable = gradient()
-            .write_png(Path::new("no/such.png"))
-            .unwrap_err()
-            .to_string();
-        assert!(
-            unwritable.contains("there is no folder no;"),
-            "{unwritable}"
-        );
+        assert!(read(b"P6 1 1 255 abc").unwrap_err().to_string().contains("not a PNG"));
+        assert!(Picture::read_png(Path::new("no/such.png")).unwrap_err().to_string().contains("no such file"));
+        assert!(Picture::read_png(Path::new(".")).unwrap_err().to_string().contains("is a folder"));
+        let unwritable = gradient().write_png(Path::new("no/such.png")).unwrap_err().to_string();
+        assert!(unwritable.contains("there is no folder no;"), "{unwritable}");
     }
 
     #[test]
@@ -289,23 +227,10 @@ mod tests {
         let sum = CRC_32.checksum(&huge[12..29]).to_be_bytes();
         huge[29..33].copy_from_slice(&sum);
         let message = read(&huge).unwrap_err().to_string();
-        assert!(
-            message.contains("1073741824 x 1073741824 pixels"),
-            "{message}"
-        );
-        assert!(
-            Picture::new(0, 3)
-                .write_png(Path::new("unwritten.png"))
-                .is_err()
-        );
-        assert!(
-            size_is_allowed(1, 1) && size_is_allowed(8192, 8192) && size_is_allowed(MAX_SIDE, 4096)
-        );
+        assert!(message.contains("1073741824 x 1073741824 pixels"), "{message}");
+        assert!(Picture::new(0, 3).write_png(Path::new("unwritten.png")).is_err());
+        assert!(size_is_allowed(1, 1) && size_is_allowed(8192, 8192) && size_is_allowed(MAX_SIDE, 4096));
         assert!(SIZES.contains(&format!("1 to {MAX_SIDE} pixels")) && SIZES.contains(&format!("most {MAX_PIXELS} in")));
-        assert!(
-            !size_is_allowed(0, 1)
-                && !size_is_allowed(8192, 8193)
-                && !size_is_allowed(MAX_SIDE + 1, 1)
-        );
+        assert!(!size_is_allowed(0, 1) && !size_is_allowed(8192, 8193) && !size_is_allowed(MAX_SIDE + 1, 1));
     }
 }

@@ -107,11 +107,7 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
     }
     let (used, materials) = used_materials(model);
     if used.len() > K::MATERIALS_MAX as usize + 1 {
-        return Err(PrepareError::TooManyMaterials {
-            found: used.len(),
-            most: K::MATERIALS_MAX + 1,
-            kernel: K::NAME,
-        });
+        return Err(PrepareError::TooManyMaterials { found: used.len(), most: K::MATERIALS_MAX + 1, kernel: K::NAME });
     }
     let grid = Grid::fit::<K>(model)?;
     let snapped = grid.snap(model);
@@ -132,14 +128,18 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
         K::triangle(&snapped.corners(id), material).expect("a triangle that the grid and the kernel hold")
     };
     let used: Vec<Material> = used.iter().map(|&m| header::material(&model.materials[m as usize])).collect();
-    let blob = layout::write::<K>(model, &grid, layout::Parts {
-        root,
-        depth,
-        nodes: nodes.iter().map(|node| K::node(node.boxes, node.children)),
-        triangles: ids.iter().map(triangle),
-        ids: &ids,
-        materials: &used,
-    })?;
+    let blob = layout::write::<K>(
+        model,
+        &grid,
+        layout::Parts {
+            root,
+            depth,
+            nodes: nodes.iter().map(|node| K::node(node.boxes, node.children)),
+            triangles: ids.iter().map(triangle),
+            ids: &ids,
+            materials: &used,
+        },
+    )?;
     Ok(Prepared { blob, degenerates, grid })
 }
 

@@ -19,10 +19,7 @@ use crate::blobs::{Draft, corners, repaired};
 /// # Panics
 /// If the importer panics, returns an unsound model, or an error that is no message.
 pub fn obj(data: &[u8]) {
-    check(load_from(
-        &Embedded(&[("x.obj", data), ("m.mtl", data)]),
-        "x.obj",
-    ));
+    check(load_from(&Embedded(&[("x.obj", data), ("m.mtl", data)]), "x.obj"));
 }
 
 /// Imports bytes as a scene.toml beside a `room.obj` of one triangle.
@@ -31,10 +28,7 @@ pub fn obj(data: &[u8]) {
 /// As [`obj`].
 pub fn scene_toml(data: &[u8]) {
     const ROOM: &[u8] = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl wall\nf 1 2 3\n";
-    check(load_from(
-        &Embedded(&[("x.toml", data), ("room.obj", ROOM)]),
-        "x.toml",
-    ));
+    check(load_from(&Embedded(&[("x.toml", data), ("room.obj", ROOM)]), "x.toml"));
 }
 
 /// Checks bytes as a blob of every kernel: as they are, and with what a fuzzer cannot guess put right: the prefix, the
@@ -90,30 +84,18 @@ fn check(result: Result<Imported, ImportError>) {
 pub fn sound(model: &Model) -> Result<(), &'static str> {
     let rule = |holds: bool, fault| if holds { Ok(()) } else { Err(fault) };
     let below = |indices: [u32; 3], count: usize| indices.iter().all(|&i| (i as usize) < count);
-    rule(
-        model.positions.iter().all(|p| p.is_finite()),
-        "a position is not finite",
-    )?;
-    rule(
-        model.normals.iter().all(|n| n.is_normalized()),
-        "a normal is not of unit length",
-    )?;
+    rule(model.positions.iter().all(|p| p.is_finite()), "a position is not finite")?;
+    rule(model.normals.iter().all(|n| n.is_normalized()), "a normal is not of unit length")?;
     rule(!model.triangles.is_empty(), "there are no triangles")?;
     for triangle in &model.triangles {
-        rule(
-            below(triangle.vertices, model.positions.len()),
-            "a vertex is out of range",
-        )?;
-        let normals = triangle
-            .normals
-            .is_none_or(|n| below(n, model.normals.len()));
+        rule(below(triangle.vertices, model.positions.len()), "a vertex is out of range")?;
+        let normals = triangle.normals.is_none_or(|n| below(n, model.normals.len()));
         rule(normals, "a normal is out of range")?;
         let material = (triangle.material as usize) < model.materials.len();
         rule(material, "a material is out of range")?;
     }
     for material in &model.materials {
-        let reflects =
-            material.diffuse.min_element() >= 0.0 && material.diffuse.max_element() <= 1.0;
+        let reflects = material.diffuse.min_element() >= 0.0 && material.diffuse.max_element() <= 1.0;
         rule(reflects, "a reflectance is not in [0, 1]")?;
         let emits = material.emission.is_finite() && material.emission.min_element() >= 0.0;
         rule(emits, "an emission is not a colour")?;
@@ -127,22 +109,9 @@ pub fn sound(model: &Model) -> Result<(), &'static str> {
     let view = camera.look_at - camera.position;
     let sees = view.is_finite() && view.abs().max_element() > 0.0;
     rule(sees, "the camera looks nowhere")?;
-    rule(
-        camera.fov_y > 0.0 && camera.fov_y < std::f64::consts::PI,
-        "the view has no angle",
-    )?;
-    rule(
-        camera.up.is_finite() && camera.up.abs().max_element() > 0.0,
-        "there is no up",
-    )?;
-    rule(
-        model
-            .render
-            .size
-            .iter()
-            .all(|side| (1..=16384).contains(side)),
-        "no such picture",
-    )
+    rule(camera.fov_y > 0.0 && camera.fov_y < std::f64::consts::PI, "the view has no angle")?;
+    rule(camera.up.is_finite() && camera.up.abs().max_element() > 0.0, "there is no up")?;
+    rule(model.render.size.iter().all(|side| (1..=16384).contains(side)), "no such picture")
 }
 
 #[cfg(test)]
@@ -152,50 +121,24 @@ mod tests {
     #[test]
     fn an_unsound_model_is_told_from_a_sound_one() {
         let text = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n";
-        let good = load_from(&Embedded(&[("x.obj", text)]), "x.obj")
-            .unwrap()
-            .model;
+        let good = load_from(&Embedded(&[("x.obj", text)]), "x.obj").unwrap().model;
         assert_eq!(sound(&good), Ok(()));
         let bad = |change: &dyn Fn(&mut Model)| {
             let mut model = good.clone();
             change(&mut model);
             sound(&model).unwrap_err()
         };
-        assert_eq!(
-            bad(&|m| m.positions[0].x = f64::NAN),
-            "a position is not finite"
-        );
-        assert_eq!(
-            bad(&|m| m.normals[0].z = 2.0),
-            "a normal is not of unit length"
-        );
+        assert_eq!(bad(&|m| m.positions[0].x = f64::NAN), "a position is not finite");
+        assert_eq!(bad(&|m| m.normals[0].z = 2.0), "a normal is not of unit length");
         assert_eq!(bad(&|m| m.triangles.clear()), "there are no triangles");
-        assert_eq!(
-            bad(&|m| m.triangles[0].vertices[1] = 3),
-            "a vertex is out of range"
-        );
-        assert_eq!(
-            bad(&|m| m.triangles[0].normals = Some([0, 0, 1])),
-            "a normal is out of range"
-        );
+        assert_eq!(bad(&|m| m.triangles[0].vertices[1] = 3), "a vertex is out of range");
+        assert_eq!(bad(&|m| m.triangles[0].normals = Some([0, 0, 1])), "a normal is out of range");
         assert_eq!(bad(&|m| m.materials.clear()), "a material is out of range");
-        assert_eq!(
-            bad(&|m| m.materials[0].diffuse.y = 1.1),
-            "a reflectance is not in [0, 1]"
-        );
-        assert_eq!(
-            bad(&|m| m.materials[0].emission.y = -1.0),
-            "an emission is not a colour"
-        );
+        assert_eq!(bad(&|m| m.materials[0].diffuse.y = 1.1), "a reflectance is not in [0, 1]");
+        assert_eq!(bad(&|m| m.materials[0].emission.y = -1.0), "an emission is not a colour");
         assert_eq!(bad(&|m| m.lights.clear()), "there is no light");
-        assert_eq!(
-            bad(&|m| m.lights[0].radiance.x = -1.0),
-            "a radiance is not a colour"
-        );
-        assert_eq!(
-            bad(&|m| m.camera.look_at = m.camera.position),
-            "the camera looks nowhere"
-        );
+        assert_eq!(bad(&|m| m.lights[0].radiance.x = -1.0), "a radiance is not a colour");
+        assert_eq!(bad(&|m| m.camera.look_at = m.camera.position), "the camera looks nowhere");
         assert_eq!(bad(&|m| m.camera.fov_y = 4.0), "the view has no angle");
         assert_eq!(bad(&|m| m.camera.up = Default::default()), "there is no up");
         assert_eq!(bad(&|m| m.render.size[0] = 0), "no such picture");
@@ -206,10 +149,6 @@ mod tests {
     fn a_message_of_two_lines_is_told_from_one() {
         let message = "a texture\ncoordinate".into();
         let (file, line) = ("built-in x.obj".into(), 1);
-        check(Err(ImportError::Line {
-            file,
-            line,
-            message,
-        }));
+        check(Err(ImportError::Line { file, line, message }));
     }
 }

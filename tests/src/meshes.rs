@@ -12,10 +12,7 @@ pub fn all(bits: u32) -> Vec<(&'static str, Vec<Triangle>)> {
     vec![
         ("sphere", sphere(bits, 12)),
         ("cuboid", cuboid([0; 3], [last; 3])),
-        (
-            "plate",
-            cuboid([last / 3, last / 2, 0], [last / 2, last / 2 + 1, last]),
-        ),
+        ("plate", cuboid([last / 3, last / 2, 0], [last / 2, last / 2 + 1, last])),
         ("soup", soup(bits, 200, 1)),
         ("slivers", slivers(bits, 200, 2)),
         ("needle fan", needle_fan(bits, 100)),
@@ -39,8 +36,7 @@ pub fn sphere(bits: u32, n: i64) -> Vec<Triangle> {
     for octant in 0..8 {
         let sign = [0, 1, 2].map(|axis| 1 - (octant >> axis & 1) * 2);
         let mut face = |corners: [[i64; 2]; 3]| {
-            let [a, b, c] =
-                corners.map(|[i, j]| point([sign[0] * i, sign[1] * j, sign[2] * (n - i - j)]));
+            let [a, b, c] = corners.map(|[i, j]| point([sign[0] * i, sign[1] * j, sign[2] * (n - i - j)]));
             let mirrored = sign[0] * sign[1] * sign[2] < 0;
             triangles.push(if mirrored { [a, c, b] } else { [a, b, c] });
         };
@@ -59,24 +55,11 @@ pub fn sphere(bits: u32, n: i64) -> Vec<Triangle> {
 /// A closed axis-parallel box of twelve triangles, seen from outside; `low` is below `high` on each
 /// axis.
 pub fn cuboid(low: [i64; 3], high: [i64; 3]) -> Vec<Triangle> {
-    let corner = |set: usize| {
-        [0, 1, 2].map(|axis| {
-            if set >> axis & 1 == 1 {
-                high[axis]
-            } else {
-                low[axis]
-            }
-        })
-    };
+    let corner = |set: usize| [0, 1, 2].map(|axis| if set >> axis & 1 == 1 { high[axis] } else { low[axis] });
     (0..3)
         .flat_map(|axis| {
             let [i, j, k] = [1, 2, 0].map(|step| 1 << ((axis + step) % 3));
-            [
-                [0, j, i],
-                [i, j, i | j],
-                [k, k | i, k | j],
-                [k | j, k | i, k | i | j],
-            ]
+            [[0, j, i], [i, j, i | j], [k, k | i, k | j], [k | j, k | i, k | i | j]]
         })
         .map(|triangle| triangle.map(corner))
         .collect()
@@ -85,9 +68,7 @@ pub fn cuboid(low: [i64; 3], high: [i64; 3]) -> Vec<Triangle> {
 /// Triangles between random grid points.
 pub fn soup(bits: u32, count: usize, seed: u64) -> Vec<Triangle> {
     let mut random = SplitMix64(seed);
-    with_area(count, || {
-        [[0; 3]; 3].map(|v| v.map(|_: i64| random.within([0, last(bits)])))
-    })
+    with_area(count, || [[0; 3]; 3].map(|v| v.map(|_: i64| random.within([0, last(bits)]))))
 }
 
 /// Triangles whose third vertex is within two units of the line through the others; lengths of a
@@ -132,11 +113,7 @@ pub fn duplicates(bits: u32, count: usize, seed: u64) -> Vec<Triangle> {
     let soup = soup(bits, count, seed);
     let rotated = soup.iter().map(|&[a, b, c]| [b, c, a]);
     let reversed = soup.iter().map(|&[a, b, c]| [c, b, a]);
-    soup.iter()
-        .copied()
-        .chain(rotated)
-        .chain(reversed)
-        .collect()
+    soup.iter().copied().chain(rotated).chain(reversed).collect()
 }
 
 /// Triangles over half a face of the grid, nearly coplanar, stacked a unit or less apart and
@@ -173,41 +150,19 @@ pub fn heightfield(bits: u32, n: i64, seed: u64) -> Vec<Triangle> {
     let last = last(bits);
     let row = n as usize + 1;
     let heights: Vec<i64> = (0..row * row).map(|_| random.within([0, last])).collect();
-    let vertex = |i: i64, j: i64| {
-        [
-            last * i / n,
-            last * j / n,
-            heights[j as usize * row + i as usize],
-        ]
-    };
+    let vertex = |i: i64, j: i64| [last * i / n, last * j / n, heights[j as usize * row + i as usize]];
     let cell = |i, j| {
-        let [a, b, c, d] = [
-            vertex(i, j),
-            vertex(i + 1, j),
-            vertex(i, j + 1),
-            vertex(i + 1, j + 1),
-        ];
+        let [a, b, c, d] = [vertex(i, j), vertex(i + 1, j), vertex(i, j + 1), vertex(i + 1, j + 1)];
         [[a, b, c], [c, b, d]]
     };
-    (0..n)
-        .flat_map(|j| (0..n).flat_map(move |i| cell(i, j)))
-        .collect()
+    (0..n).flat_map(|j| (0..n).flat_map(move |i| cell(i, j))).collect()
 }
 
 /// Triangles without area: points, doubled edges and collinear vertices. No ray hits one.
 pub fn degenerates(bits: u32) -> Vec<Triangle> {
     let last = last(bits);
     let (a, b, c) = ([0; 3], [last / 2; 3], [last / 2 * 2; 3]);
-    vec![
-        [a, a, a],
-        [c, c, c],
-        [a, a, b],
-        [a, b, a],
-        [b, a, a],
-        [a, b, c],
-        [c, a, b],
-        [b, c, a],
-    ]
+    vec![[a, a, a], [c, c, c], [a, a, b], [a, b, a], [b, a, a], [a, b, c], [c, a, b], [b, c, a]]
 }
 
 /// The greatest coordinate.
@@ -217,10 +172,7 @@ fn last(bits: u32) -> i64 {
 
 /// As many as asked for of those drawn that have an area.
 fn with_area(count: usize, draw: impl FnMut() -> Triangle) -> Vec<Triangle> {
-    std::iter::repeat_with(draw)
-        .filter(|t| normal(t) != [0; 3])
-        .take(count)
-        .collect()
+    std::iter::repeat_with(draw).filter(|t| normal(t) != [0; 3]).take(count).collect()
 }
 
 /// (v1 - v0) x (v2 - v0), exact for vertices on a grid of up to 30 bits: below 2^61.
@@ -245,18 +197,12 @@ mod tests {
                 *edges.entry(edge).or_insert(0) += 1;
             }
         }
-        edges
-            .iter()
-            .all(|(&[a, b], &n)| n == 1 && edges.contains_key(&[b, a]))
+        edges.iter().all(|(&[a, b], &n)| n == 1 && edges.contains_key(&[b, a]))
     }
 
     /// Six times the volume inside a closed mesh seen counter-clockwise from outside.
     fn volume(mesh: &[Triangle]) -> i128 {
-        let corner = |t: &Triangle| {
-            (0..3)
-                .map(|i| i128::from(normal(t)[i]) * i128::from(t[0][i]))
-                .sum::<i128>()
-        };
+        let corner = |t: &Triangle| (0..3).map(|i| i128::from(normal(t)[i]) * i128::from(t[0][i])).sum::<i128>();
         mesh.iter().map(corner).sum()
     }
 
@@ -265,13 +211,7 @@ mod tests {
         for bits in [8, 14, 20, 29, 30] {
             for (name, mesh) in all(bits) {
                 assert!(!mesh.is_empty());
-                assert!(
-                    mesh.iter()
-                        .flatten()
-                        .flatten()
-                        .all(|c| (0..1 << bits).contains(c)),
-                    "{name} {bits}"
-                );
+                assert!(mesh.iter().flatten().flatten().all(|c| (0..1 << bits).contains(c)), "{name} {bits}");
                 assert!(mesh.iter().all(|t| normal(t) != [0; 3]), "{name} {bits}");
             }
             assert!(degenerates(bits).iter().all(|t| normal(t) == [0; 3]));
@@ -297,29 +237,15 @@ mod tests {
 
     #[test]
     fn slivers_are_thin_and_scales_range_from_one_unit_to_the_grid() {
-        let square =
-            |[a, b]: [[i64; 3]; 2]| (0..3).map(|i| i128::from(a[i] - b[i]).pow(2)).sum::<i128>();
+        let square = |[a, b]: [[i64; 3]; 2]| (0..3).map(|i| i128::from(a[i] - b[i]).pow(2)).sum::<i128>();
         for t in slivers(29, 1000, 6) {
-            let longest = [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]]
-                .map(square)
-                .into_iter()
-                .max();
-            let doubled_area = normal(&t)
-                .map(|c| i128::from(c).pow(2))
-                .into_iter()
-                .sum::<i128>();
+            let longest = [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]].map(square).into_iter().max();
+            let doubled_area = normal(&t).map(|c| i128::from(c).pow(2)).into_iter().sum::<i128>();
             // Height^2 = (2 area)^2 / longest^2: within two units of the line, and rounding.
-            assert!(
-                longest.is_some_and(|longest| doubled_area <= 9 * longest),
-                "{t:?}"
-            );
+            assert!(longest.is_some_and(|longest| doubled_area <= 9 * longest), "{t:?}");
         }
         let mesh = scales(20);
-        let edges = || {
-            mesh.iter()
-                .flat_map(|t| [[t[0], t[1]], [t[1], t[2]]])
-                .map(square)
-        };
+        let edges = || mesh.iter().flat_map(|t| [[t[0], t[1]], [t[1], t[2]]]).map(square);
         assert_eq!(edges().min(), Some(1));
         assert!(edges().max() >= Some(1 << 40));
         assert!((1..20).all(|k| edges().any(|e| (1 << (2 * k)..4 << (2 * k)).contains(&e))));

@@ -60,12 +60,9 @@ impl Nearest {
     /// The order of hits along one ray: by t exactly, then by index.
     pub fn order(&self, other: &Self) -> Ordering {
         // Below 2^95.6 * 2^97.2 < 2^193.
-        let cross = |a: &Self, b: &Self| {
-            U256::from(a.numerator.unsigned_abs()) * U256::from(b.denominator.unsigned_abs())
-        };
-        cross(self, other)
-            .cmp(&cross(other, self))
-            .then(self.prim.cmp(&other.prim))
+        let cross =
+            |a: &Self, b: &Self| U256::from(a.numerator.unsigned_abs()) * U256::from(b.denominator.unsigned_abs());
+        cross(self, other).cmp(&cross(other, self)).then(self.prim.cmp(&other.prim))
     }
 }
 
@@ -83,15 +80,10 @@ impl Oracle {
     /// If a coordinate exceeds [`MAX_COORDINATE`].
     pub fn new(triangles: &[Triangle]) -> Self {
         let narrow = |c: i64| {
-            assert!(
-                c.abs() <= MAX_COORDINATE,
-                "vertex coordinate {c} is out of the oracle's range"
-            );
+            assert!(c.abs() <= MAX_COORDINATE, "vertex coordinate {c} is out of the oracle's range");
             c as i32
         };
-        Self {
-            triangles: triangles.iter().map(|t| t.map(|v| v.map(narrow))).collect(),
-        }
+        Self { triangles: triangles.iter().map(|t| t.map(|v| v.map(narrow))).collect() }
     }
 
     /// The hit with the smallest t, and of those the one with the lowest index.
@@ -120,9 +112,7 @@ impl Oracle {
                 let mut nearest = vec![None; rays.len()];
                 for (block, triangles) in self.triangles.chunks(BLOCK).enumerate() {
                     for (ray, nearest) in rays.iter().zip(&mut nearest) {
-                        *nearest = hits(triangles, block * BLOCK, ray)
-                            .chain(*nearest)
-                            .min_by(Nearest::order);
+                        *nearest = hits(triangles, block * BLOCK, ray).chain(*nearest).min_by(Nearest::order);
                     }
                 }
                 nearest
@@ -132,38 +122,23 @@ impl Oracle {
 }
 
 /// All hits of the ray with triangles of which the first has index `first`.
-fn hits<'a>(
-    triangles: &'a [[[i32; 3]; 3]],
-    first: usize,
-    ray: &'a Ray,
-) -> impl Iterator<Item = Nearest> + 'a {
+fn hits<'a>(triangles: &'a [[[i32; 3]; 3]], first: usize, ray: &'a Ray) -> impl Iterator<Item = Nearest> + 'a {
     assert!(
-        ray.origin.iter().all(|c| c.abs() <= MAX_COORDINATE)
-            && ray.direction.iter().all(|c| c.abs() <= MAX_DIRECTION),
+        ray.origin.iter().all(|c| c.abs() <= MAX_COORDINATE) && ray.direction.iter().all(|c| c.abs() <= MAX_DIRECTION),
         "{ray:?} is out of the oracle's range"
     );
-    triangles
-        .iter()
-        .enumerate()
-        .filter_map(move |(i, triangle)| {
-            // At most 2^30 + 2^30 = 2^31 in size.
-            let relative =
-                triangle.map(|v| [0, 1, 2].map(|axis| i64::from(v[axis]) - ray.origin[axis]));
-            let prim = (first + i) as u32;
-            if separated(&relative, ray.direction) || ray.skip == Some(prim) {
-                return None;
-            }
-            let (numerator, denominator) = hit(&relative, ray.direction)?;
-            // n < d / 2^k in integers, without a shift that could overflow.
-            let in_reach = ray
-                .limit
-                .is_none_or(|k| numerator <= (denominator - 1) >> k);
-            in_reach.then_some(Nearest {
-                prim,
-                numerator,
-                denominator,
-            })
-        })
+    triangles.iter().enumerate().filter_map(move |(i, triangle)| {
+        // At most 2^30 + 2^30 = 2^31 in size.
+        let relative = triangle.map(|v| [0, 1, 2].map(|axis| i64::from(v[axis]) - ray.origin[axis]));
+        let prim = (first + i) as u32;
+        if separated(&relative, ray.direction) || ray.skip == Some(prim) {
+            return None;
+        }
+        let (numerator, denominator) = hit(&relative, ray.direction)?;
+        // n < d / 2^k in integers, without a shift that could overflow.
+        let in_reach = ray.limit.is_none_or(|k| numerator <= (denominator - 1) >> k);
+        in_reach.then_some(Nearest { prim, numerator, denominator })
+    })
 }
 
 /// Whether all vertices (relative to the origin) lie strictly on one side of the plane through the
@@ -180,11 +155,7 @@ fn separated(p: &Triangle, d: [i64; 3]) -> bool {
 /// t as a fraction of positive parts, if the ray meets the triangle (relative to the origin).
 fn hit(p: &Triangle, d: [i64; 3]) -> Option<(i128, i128)> {
     let [p0, p1, p2] = *p;
-    let volumes = [
-        determinant(d, p1, p2),
-        determinant(d, p2, p0),
-        determinant(d, p0, p1),
-    ];
+    let volumes = [determinant(d, p1, p2), determinant(d, p2, p0), determinant(d, p0, p1)];
     let denominator: i128 = volumes.iter().sum(); // below 3 * 2^95.6 < 2^97.2
     let side = denominator.signum();
     let numerator = determinant(p0, p1, p2) * side;
@@ -195,9 +166,7 @@ fn hit(p: &Triangle, d: [i64; 3]) -> Option<(i128, i128)> {
 /// a . (b x c): six products of at most 2^31 * 2^31 * 2^31, so below 2^95.6.
 fn determinant(a: [i64; 3], b: [i64; 3], c: [i64; 3]) -> i128 {
     let [a, b, c] = [a, b, c].map(|v| v.map(i128::from));
-    a[0] * (b[1] * c[2] - b[2] * c[1])
-        + a[1] * (b[2] * c[0] - b[0] * c[2])
-        + a[2] * (b[0] * c[1] - b[1] * c[0])
+    a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
 }
 
 #[cfg(test)]

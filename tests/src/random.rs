@@ -4,10 +4,7 @@
 /// The splitmix64 generator (G. Steele, D. Lea, C. Flood, *Fast splittable pseudorandom number
 /// generators*, 2014).
 #[derive(Clone, Debug)]
-#[expect(
-    missing_copy_implementations,
-    reason = "a copy would repeat the numbers unnoticed"
-)]
+#[expect(missing_copy_implementations, reason = "a copy would repeat the numbers unnoticed")]
 pub struct SplitMix64(pub u64);
 
 impl SplitMix64 {
@@ -44,11 +41,7 @@ mod tests {
     fn it_is_splitmix64() {
         // The first outputs for seed 1234567 of the authors' reference in C.
         let mut random = SplitMix64(1_234_567);
-        let expected = [
-            6_457_827_717_110_365_317,
-            3_203_168_211_198_807_973,
-            9_817_491_932_198_370_423,
-        ];
+        let expected = [6_457_827_717_110_365_317, 3_203_168_211_198_807_973, 9_817_491_932_198_370_423];
         assert_eq!([(); 3].map(|()| random.bits()), expected);
     }
 

@@ -80,26 +80,13 @@ impl<'a> Rays<'a> {
     pub fn new(triangles: &'a [Triangle], bounds: Bounds, seed: u64) -> Self {
         let [low, high] = bounds.origin;
         assert!(!triangles.is_empty(), "rays need a triangle to aim at");
-        assert!(
-            low <= 0 && high >= (1 << bounds.grid_bits) - 1 && bounds.direction >= 2,
-            "{bounds:?}"
-        );
-        Self {
-            triangles,
-            bounds,
-            random: SplitMix64(seed),
-            turn: 0,
-        }
+        assert!(low <= 0 && high >= (1 << bounds.grid_bits) - 1 && bounds.direction >= 2, "{bounds:?}");
+        Self { triangles, bounds, random: SplitMix64(seed), turn: 0 }
     }
 
     /// The next ray of one kind. Its direction is not zero.
     pub fn ray(&mut self, kind: Kind) -> Ray {
-        let mut ray = Ray {
-            origin: self.origin(),
-            direction: [0; 3],
-            limit: None,
-            skip: None,
-        };
+        let mut ray = Ray { origin: self.origin(), direction: [0; 3], limit: None, skip: None };
         match kind {
             Kind::Random => {
                 (ray.origin, ray.direction) = if self.random.coin() {
@@ -118,19 +105,9 @@ impl<'a> Rays<'a> {
                 let point = self.edge_point();
                 let axis = self.random.below(3) as usize;
                 let free = self.random.below(3) as usize; // the axis itself: through the point
-                ray.origin = [0, 1, 2].map(|i| {
-                    if i == axis || i == free {
-                        ray.origin[i]
-                    } else {
-                        point[i]
-                    }
-                });
+                ray.origin = [0, 1, 2].map(|i| if i == axis || i == free { ray.origin[i] } else { point[i] });
                 let speed = self.random.below(self.bounds.direction as u64) as i64 + 1;
-                ray.direction[axis] = if ray.origin[axis] < point[axis] {
-                    speed
-                } else {
-                    -speed
-                };
+                ray.direction[axis] = if ray.origin[axis] < point[axis] { speed } else { -speed };
             }
             Kind::InPlane => {
                 let (vertex, direction) = self.in_plane();
@@ -152,18 +129,13 @@ impl<'a> Rays<'a> {
             }
             Kind::Corner => {
                 let last = (1 << self.bounds.grid_bits) - 1;
-                let corner =
-                    [0, 1, 2].map(|_| [0, (last + 1) / 2, last][self.random.below(3) as usize]);
+                let corner = [0, 1, 2].map(|_| [0, (last + 1) / 2, last][self.random.below(3) as usize]);
                 let target = self.edge()[0];
                 (ray.origin, ray.direction) = self.through(corner, target);
             }
             Kind::Segment => {
                 let (prim, origin) = self.surface();
-                let target = if self.random.coin() {
-                    self.surface().1
-                } else {
-                    self.edge()[0]
-                };
+                let target = if self.random.coin() { self.surface().1 } else { self.edge()[0] };
                 ray.origin = origin;
                 ray.direction = self.fit(difference(target, origin));
                 ray.limit = Some(0);
@@ -171,8 +143,7 @@ impl<'a> Rays<'a> {
             }
             Kind::Grazing => {
                 let (vertex, direction) = self.in_plane();
-                ray.direction =
-                    self.nudge(direction, [-self.bounds.direction, self.bounds.direction]);
+                ray.direction = self.nudge(direction, [-self.bounds.direction, self.bounds.direction]);
                 let point = self.nudge(vertex, self.bounds.origin);
                 ray.origin = self.before(point, ray.direction);
             }
@@ -227,8 +198,7 @@ impl<'a> Rays<'a> {
         if a + b > ONE {
             (a, b) = (ONE - a, ONE - b);
         }
-        let point =
-            [0, 1, 2].map(|i| ((ONE - a - b) * v0[i] + a * v1[i] + b * v2[i] + ONE / 2) >> 16);
+        let point = [0, 1, 2].map(|i| ((ONE - a - b) * v0[i] + a * v1[i] + b * v2[i] + ONE / 2) >> 16);
         (prim, point)
     }
 
@@ -241,10 +211,7 @@ impl<'a> Rays<'a> {
         let (e1, e2) = (difference(v1, v0), difference(v2, v0));
         let (m, n) = (self.random.within([1, 2]), self.random.within([-2, 2]));
         let combined = [0, 1, 2].map(|i| m * e1[i] + n * e2[i]);
-        (
-            v0,
-            self.fit(if self.fits(combined) { combined } else { e1 }),
-        )
+        (v0, self.fit(if self.fits(combined) { combined } else { e1 }))
     }
 
     /// Each coordinate moved by one, or not, within the bounds.
@@ -277,15 +244,8 @@ impl<'a> Rays<'a> {
         // Each component was divided by nearly the same number; the smallest quotient is how often
         // the direction fits between the two, so the new origin lies between them, within the
         // bounds.
-        let times = (0..3)
-            .filter(|&i| direction[i] != 0)
-            .map(|i| direct[i] / direction[i])
-            .min()
-            .unwrap_or(0);
-        (
-            [0, 1, 2].map(|i| point[i] - times * direction[i]),
-            direction,
-        )
+        let times = (0..3).filter(|&i| direction[i] != 0).map(|i| direct[i] / direction[i]).min().unwrap_or(0);
+        ([0, 1, 2].map(|i| point[i] - times * direction[i]), direction)
     }
 
     /// A ray through (w a + (n - w) b) / n on an edge a b: that point is o + d / n for d = w a + (n
@@ -307,17 +267,9 @@ impl<'a> Rays<'a> {
     fn before(&mut self, point: [i64; 3], d: [i64; 3]) -> [i64; 3] {
         let [low, high] = self.bounds.origin;
         let room = |i: usize| {
-            if d[i] > 0 {
-                point[i] - low
-            } else {
-                high - point[i]
-            }
+            if d[i] > 0 { point[i] - low } else { high - point[i] }
         };
-        let most = (0..3)
-            .filter(|&i| d[i] != 0)
-            .map(|i| room(i) / d[i].abs())
-            .min()
-            .unwrap_or(0);
+        let most = (0..3).filter(|&i| d[i] != 0).map(|i| room(i) / d[i].abs()).min().unwrap_or(0);
         let steps = self.random.within([most.min(1), most]);
         [0, 1, 2].map(|i| point[i] - steps * d[i])
     }

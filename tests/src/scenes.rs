@@ -58,10 +58,8 @@ fn flat() -> Model {
 /// Directional light and ambient light; a sphere that shades itself.
 fn sun() -> Model {
     let mut model = of(&meshes::sphere(10, 6), [96, 64]);
-    model.lights = vec![Light {
-        kind: LightKind::Directional(DVec3::new(-1.0, -2.0, -0.5)),
-        radiance: DVec3::new(1.0, 0.9, 0.7),
-    }];
+    model.lights =
+        vec![Light { kind: LightKind::Directional(DVec3::new(-1.0, -2.0, -0.5)), radiance: DVec3::new(1.0, 0.9, 0.7) }];
     model.render.ambient = DVec3::splat(0.05);
     model
 }
@@ -78,10 +76,9 @@ fn several_lights() -> Model {
         triangle.material = i % 3;
     }
     model.lights.push(Light { kind: LightKind::Point(DVec3::new(2.0, 0.5, 0.5)), radiance: DVec3::splat(0.25) });
-    model.lights.push(Light {
-        kind: LightKind::Directional(DVec3::new(0.0, 0.0, -1.0)),
-        radiance: DVec3::new(0.0, 3.0, 0.0),
-    });
+    model
+        .lights
+        .push(Light { kind: LightKind::Directional(DVec3::new(0.0, 0.0, -1.0)), radiance: DVec3::new(0.0, 3.0, 0.0) });
     model
 }
 

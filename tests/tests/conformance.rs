@@ -127,9 +127,8 @@ where
     let (corners, triangles) = on_grid::<W>(triangles);
     let built = Built::<W>::new(&corners, leaf_max);
     let oracle = Oracle::new(&triangles);
-    let rays: Vec<(Kind, tests::oracle::Ray)> = Rays::new(&triangles, bounds::<W>(&triangles), seed)
-        .take(count)
-        .collect();
+    let rays: Vec<(Kind, tests::oracle::Ray)> =
+        Rays::new(&triangles, bounds::<W>(&triangles), seed).take(count).collect();
     let plain: Vec<tests::oracle::Ray> = rays.iter().map(|(_, ray)| *ray).collect();
     let expected = oracle.nearest_batch(&plain);
     let hits = expected.iter().flatten().count();
@@ -142,7 +141,13 @@ where
         })
         .collect();
     println!("{} on {name}, leaves to {leaf_max}: {count} rays, {hits} hits, {} differ", W::NAME, wrong.len());
-    assert!(wrong.is_empty(), "{} on {name}: {} differ\n{}", W::NAME, wrong.len(), wrong[..wrong.len().min(5)].join("\n"));
+    assert!(
+        wrong.is_empty(),
+        "{} on {name}: {} differ\n{}",
+        W::NAME,
+        wrong.len(),
+        wrong[..wrong.len().min(5)].join("\n")
+    );
     assert!(hits * 20 > count, "{name}: only {hits} of {count} rays hit anything, so little was compared");
 }
 
@@ -181,8 +186,7 @@ where
         let Some(path) = shared::scene(scene) else { continue };
         let model = host_tools::import::load(&path).expect("a real model").model;
         let grid = host_tools::grid::Grid::fit::<Exact<W>>(&model).expect("it has extent");
-        let corners: Vec<Triangle> =
-            grid.snap(&model).iter().map(|t| t.map(|v| v.map(i64::from))).collect();
+        let corners: Vec<Triangle> = grid.snap(&model).iter().map(|t| t.map(|v| v.map(i64::from))).collect();
         compare::<W>(scene, &corners, 8, count, 7);
     }
 }

@@ -26,33 +26,13 @@ fn files_that_cannot_be_read_as_scenes_are_refused() {
     let cases: [(&str, Option<&[u8]>, &str); 10] = [
         ("none.obj", None, ": no such file"),
         ("none.toml", None, ": no such file"),
-        (
-            "mesh.stl",
-            Some(b"solid"),
-            ": a scene is a .toml or .obj file",
-        ),
+        ("mesh.stl", Some(b"solid"), ": a scene is a .toml or .obj file"),
         ("mesh", Some(b"v"), ": a scene is a .toml or .obj file"),
         ("empty.obj", Some(b""), ": the file is empty"),
-        (
-            "blank.OBJ",
-            Some(b"\n# nothing\n"),
-            ": no faces; an OBJ scene needs at least one `f` statement",
-        ),
-        (
-            "vertices.obj",
-            Some(b"v 0 0 0\n"),
-            ": no faces; an OBJ scene needs at least one `f` statement",
-        ),
-        (
-            "utf16.obj",
-            Some(b"\xff\xfev\0"),
-            ": the file is UTF-16; save it as UTF-8 text",
-        ),
-        (
-            "png.obj",
-            Some(b"\x89PNG\r\n\x1a\n\0"),
-            ":1: `\u{fffd}PNG` is not an OBJ statement",
-        ),
+        ("blank.OBJ", Some(b"\n# nothing\n"), ": no faces; an OBJ scene needs at least one `f` statement"),
+        ("vertices.obj", Some(b"v 0 0 0\n"), ": no faces; an OBJ scene needs at least one `f` statement"),
+        ("utf16.obj", Some(b"\xff\xfev\0"), ": the file is UTF-16; save it as UTF-8 text"),
+        ("png.obj", Some(b"\x89PNG\r\n\x1a\n\0"), ":1: `\u{fffd}PNG` is not an OBJ statement"),
         (
             "point.obj",
             Some(b"v 1 2 3\nv 1 2 3\nv 9 9 9\nf 1 2 1\n"),
@@ -77,16 +57,8 @@ fn a_scene_on_disk_finds_its_files_beside_it() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
     std::fs::create_dir(at("meshes")).unwrap();
-    std::fs::write(
-        at("meshes/Room.OBJ"),
-        [b"mtllib m.mtl gone.mtl\n", ROOM].concat(),
-    )
-    .unwrap();
-    std::fs::write(
-        at("meshes/m.mtl"),
-        "newmtl wall\nKd 0.1 0.2 0.3\nKe 4 5 6\n",
-    )
-    .unwrap();
+    std::fs::write(at("meshes/Room.OBJ"), [b"mtllib m.mtl gone.mtl\n", ROOM].concat()).unwrap();
+    std::fs::write(at("meshes/m.mtl"), "newmtl wall\nKd 0.1 0.2 0.3\nKe 4 5 6\n").unwrap();
     std::fs::write(at("s.toml"), "model = 'meshes/Room.OBJ'\n").unwrap();
     let imported = load(&at("s.toml")).unwrap();
     let material = &imported.model.materials[0];
@@ -115,10 +87,7 @@ fn a_bare_obj_is_framed() {
     assert_eq!(model.camera.up, DVec3::Y);
     assert!((model.camera.fov_y - 0.698_131_700_797_731_8).abs() < 1e-15);
     assert_eq!(model.lights.len(), 1);
-    assert_eq!(
-        model.lights[0].kind,
-        LightKind::Point(model.camera.position)
-    );
+    assert_eq!(model.lights[0].kind, LightKind::Point(model.camera.position));
     assert_eq!(model.lights[0].radiance, DVec3::ONE);
     assert_eq!(model.background, DVec3::ZERO);
     assert_eq!(model.render.size, [640, 480]);
@@ -145,15 +114,9 @@ fn the_settings_of_a_scene_reach_the_model() {
     assert_eq!(model.camera.look_at, DVec3::Y);
     assert_eq!(model.camera.up, DVec3::new(0.0, 2.0, 1.0));
     assert_eq!(model.camera.fov_y, std::f64::consts::FRAC_PI_2);
-    assert_eq!(
-        model.lights[0].kind,
-        LightKind::Point(DVec3::new(0.0, 2.0, 1.0))
-    );
+    assert_eq!(model.lights[0].kind, LightKind::Point(DVec3::new(0.0, 2.0, 1.0)));
     assert_eq!(model.lights[0].radiance, DVec3::new(4.0, 2.0, 0.0));
-    assert_eq!(
-        model.lights[1].kind,
-        LightKind::Directional(DVec3::new(0.0, -3.0, 0.0))
-    );
+    assert_eq!(model.lights[1].kind, LightKind::Directional(DVec3::new(0.0, -3.0, 0.0)));
     assert_eq!(model.lights[1].radiance, DVec3::ONE);
     assert_eq!(model.background, DVec3::new(0.1, 0.2, 0.3));
     assert_eq!(model.render.size, [320, 200]);
@@ -188,19 +151,10 @@ fn real_scenes_are_imported_whole() {
         let imported = load(&folder.join(name)).unwrap();
         let model = &imported.model;
         assert_eq!(model.triangles.len(), triangles, "{name}");
-        let with_normals = model
-            .triangles
-            .iter()
-            .filter(|t| t.normals.is_some())
-            .count();
+        let with_normals = model.triangles.iter().filter(|t| t.normals.is_some()).count();
         assert_eq!(with_normals, smooth, "{name}");
         assert_eq!(model.materials.len(), materials, "{name}");
-        assert_eq!(
-            imported.warnings.len(),
-            warned,
-            "{name}: {:?}",
-            warnings(&imported)
-        );
+        assert_eq!(imported.warnings.len(), warned, "{name}: {:?}", warnings(&imported));
         assert_eq!(tests::fuzz::sound(model), Ok(()), "{name}");
     }
 }

@@ -109,9 +109,8 @@ where
 /// What f64 makes of t, u, v; exact enough beside 14 bits, and beside 29 because the sums are exact in i128.
 fn exactly(ray: [[i64; 3]; 2], [v0, v1, v2]: [[i64; 3]; 3]) -> (f64, f64, f64) {
     let sub = |a: [i64; 3], b: [i64; 3]| [0, 1, 2].map(|i| i128::from(a[i] - b[i]));
-    let cross = |a: [i128; 3], b: [i128; 3]| {
-        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-    };
+    let cross =
+        |a: [i128; 3], b: [i128; 3]| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
     let dot = |a: [i128; 3], b: [i128; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let (e1, e2, s) = (sub(v1, v0), sub(v2, v0), sub(ray[0], v0));
     let d = ray[1].map(i128::from);

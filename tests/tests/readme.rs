@@ -61,7 +61,10 @@ fn the_readme_shows_what_the_program_makes() {
     }
     let stored = Picture::read_png(&root("docs/demo.png")).expect("the README's picture");
     assert!(stored == shown, "docs/demo.png is not what the program renders; INTRAY_BLESS=1 renews it");
-    assert!(readme == expected || std::env::var_os("INTRAY_BLESS").is_some(), "README.md: INTRAY_BLESS=1 renews the figures");
+    assert!(
+        readme == expected || std::env::var_os("INTRAY_BLESS").is_some(),
+        "README.md: INTRAY_BLESS=1 renews the figures"
+    );
 }
 
 #[test]

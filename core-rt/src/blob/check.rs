@@ -37,7 +37,7 @@ pub(crate) fn check<K: Kernel>(header: &Header, bvh: &Bvh<'_, K>, shading: &Shad
         .all(|radiance| Radiance::EXPONENTS.contains(&radiance.exponent));
     let lights = shading.lights.iter().all(light_is_valid);
     let reserved = shading.materials.iter().all(|m: &Material| m.reserved == 0);
-    let normals = shading.normals.iter().all(|normal| K::Space::is_unit(normal));
+    let normals = shading.normals.iter().all(K::Space::is_unit);
     if !(in_range && lights && reserved && normals) {
         return Err(BlobError::Shading);
     }

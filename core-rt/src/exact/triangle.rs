@@ -154,7 +154,7 @@ pub(super) fn intersect<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Sho
 
     let all_positive = u_positive && v_positive && w_positive;
     let all_negative = u_negative && v_negative && w_negative;
-    if !(all_positive || all_negative) && !inside::<W>(ray, e1, e2, r) {
+    if !(all_positive || all_negative || inside::<W>(ray, e1, e2, r)) {
         return None;
     }
     depth(ray, s, e1, e2)
@@ -174,12 +174,7 @@ fn inside<W: Width>(ray: &Ray<W>, e1: Triple<W::Word>, e2: Triple<W::Word>, r: T
 
 /// t, for a line that meets the triangle.
 #[inline]
-fn depth<W: Width>(
-    ray: &Ray<W>,
-    s: Triple<W::Word>,
-    e1: Triple<W::Word>,
-    e2: Triple<W::Word>,
-) -> Option<Depth<W>> {
+fn depth<W: Width>(ray: &Ray<W>, s: Triple<W::Word>, e1: Triple<W::Word>, e2: Triple<W::Word>) -> Option<Depth<W>> {
     let (numerator, denominator) = fraction::<W>(ray, s, e1, e2);
     if numerator <= W::Wide::default() {
         return None;

@@ -89,9 +89,8 @@ impl Width for Width14 {
     /// most 2^15 (2^15 - 1), and two of them fit; the third is added in 64 bits.
     #[inline]
     fn dot(a: Triple<i32>, b: Triple<i32>) -> i64 {
-        let sum = |limb: fn(i32) -> i32| {
-            i64::from(a[0] * limb(b[0]) + a[1] * limb(b[1])) + i64::from(a[2] * limb(b[2]))
-        };
+        let sum =
+            |limb: fn(i32) -> i32| i64::from(a[0] * limb(b[0]) + a[1] * limb(b[1])) + i64::from(a[2] * limb(b[2]));
         (sum(|b| b >> 15) << 15) + sum(|b| b & 0x7fff)
     }
 
@@ -104,21 +103,19 @@ impl Width for Width14 {
     /// t = numerator / denominator in Q13 = (numerator / 2^3) mantissa / 2^15.
     #[inline]
     fn depth(numerator: i64, denominator: i64) -> i32 {
-        let bits = i64::BITS - denominator.leading_zeros();
-        let scaled = |value: i64, bits: u32| if bits > 16 { value >> (bits - 16) } else { value << (16 - bits) };
-        let r = reciprocal(scaled(denominator, bits) as u32);
-        ((scaled(numerator, bits) as u32 >> 3) * r.mantissa >> 15) as i32
+        let bits = bits_of(denominator);
+        let r = reciprocal(scaled(denominator, bits, 16) as u32);
+        (((scaled(numerator, bits, 13) as u32) * r.mantissa) >> 15) as i32
     }
 
     /// Within 4 units of 2^-14: the reciprocal is low by one in 2^14, the denominator's truncation makes it high by one in
     /// 2^15, the numerator's is less than two units of 2^-15, and the floor is one.
     #[inline]
     fn fraction(numerator: i64, denominator: i64) -> <Grid14 as Space>::Fraction {
-        let bits = i64::BITS - denominator.leading_zeros();
-        let scaled = |value: i64| if bits > 16 { value >> (bits - 16) } else { value << (16 - bits) };
-        let r = reciprocal(scaled(denominator) as u32);
+        let bits = bits_of(denominator);
+        let r = reciprocal(scaled(denominator, bits, 16) as u32);
         // numerator <= denominator < 2^16 and mantissa < 2^16; mantissa / 2^31 is 1 / denominator; to Q14.
-        let fraction = ((scaled(numerator) as u32 * r.mantissa) >> 17).min(1 << 14);
+        let fraction = ((scaled(numerator, bits, 16) as u32 * r.mantissa) >> 17).min(1 << 14);
         <Grid14 as Space>::Fraction::from_bits(fraction as i16)
     }
 
@@ -130,15 +127,14 @@ impl Width for Width14 {
         let t0_q16 = Self::depth(numerator, denominator) << 3;
         // tn < 2^47, so tn << 16 fits, and t0 det is the same within 2^6 det < 2^51.
         let remainder = (numerator << 16) - i64::from(t0_q16) * denominator;
-        let bits = i64::BITS - denominator.leading_zeros();
-        let r = reciprocal(if bits > 16 { denominator >> (bits - 16) } else { denominator << (16 - bits) } as u32);
+        let bits = bits_of(denominator);
+        let r = reciprocal(scaled(denominator, bits, 16) as u32);
         // |remainder| < 2^6 det: scaled to a denominator of 16 bits and 8 bits less, below 2^14.
-        let scaled = if bits > 8 { remainder >> (bits - 8) } else { remainder << (8 - bits) } as i32;
+        let scaled = scaled(remainder, bits, 8) as i32;
         // mantissa / 2^31 is 1 / the 16-bit denominator.
         let t_q16 = t0_q16 + ((scaled * r.mantissa as i32) >> 23);
-        let moved = |origin: i32, direction: i32| {
-            (origin << POINT_BITS) + round_shift(direction * t_q16, 16 - POINT_BITS)
-        };
+        let moved =
+            |origin: i32, direction: i32| (origin << POINT_BITS) + round_shift(direction * t_q16, 16 - POINT_BITS);
         [moved(origin[0], direction[0]), moved(origin[1], direction[1]), moved(origin[2], direction[2])]
     }
 
@@ -171,4 +167,16 @@ impl Width for Width14 {
     fn split_meta(meta: i16) -> (u32, u32) {
         (u32::from(meta as u16 & 15), u32::from(meta as u16 >> 4))
     }
+}
+
+/// The number of bits of a positive value.
+#[inline]
+fn bits_of(value: i64) -> u32 {
+    i64::BITS - value.leading_zeros()
+}
+
+/// `value * 2^(to - from)`, rounded down: of a value with `from` bits, the leading `to`.
+#[inline]
+fn scaled(value: i64, from: u32, to: u32) -> i64 {
+    if from > to { value >> (from - to) } else { value << (to - from) }
 }

@@ -115,11 +115,7 @@ impl Width for Width29 {
             let offset_q62 = i128::from(direction) * t_q62; // at most 2^31 * 2^61
             (origin << POINT_BITS) + ((offset_q62 + (1 << (61 - POINT_BITS))) >> (62 - POINT_BITS)) as i64
         };
-        [
-            moved(origin[0], direction[0]),
-            moved(origin[1], direction[1]),
-            moved(origin[2], direction[2]),
-        ]
+        [moved(origin[0], direction[0]), moved(origin[1], direction[1]), moved(origin[2], direction[2])]
     }
 
     #[inline]

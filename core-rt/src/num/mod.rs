@@ -92,11 +92,7 @@ pub fn sub<T: Word>(a: Triple<T>, b: Triple<T>) -> Triple<T> {
 /// `a x b`. Each component is at most twice the product of the largest ones.
 #[inline(always)]
 pub fn cross<T: Word>(a: Triple<T>, b: Triple<T>) -> Triple<T> {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// `a . b` in the word itself, so at most three times the product of the largest components.

@@ -88,7 +88,7 @@ mod tests {
                 let x = (u64::from(high) << 32) | u64::from(low);
                 let y = u128::from(inverse_sqrt_u64(x));
                 // x y^2 / 2^126 in Q60, by two halvings so that it fits.
-                let square = ((u128::from(x) * y) >> 34) * y >> 32;
+                let square = (((u128::from(x) * y) >> 34) * y) >> 32;
                 let one = 1u128 << 60;
                 assert!(square.abs_diff(one) < 2 * (one >> 28), "{x:#x}: {y:#x}");
             }

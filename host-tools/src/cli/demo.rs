@@ -7,6 +7,7 @@ use super::input::Scene;
 use super::{output, progress, render};
 use crate::compare::compare;
 use crate::engine::ENGINES;
+use crate::files;
 use crate::import::{self, Embedded};
 use crate::picture::Picture;
 use crate::prepare::Options;
@@ -16,6 +17,8 @@ use crate::{builtin, model::Model};
 const OUTPUT: &str = "out/demo.png";
 
 pub(super) fn run() -> Result<(), Failure> {
+    create_folder(Path::new(OUTPUT))?;
+    files::check_writable(Path::new(OUTPUT))?;
     let model = import::load_from(&Embedded(builtin::FILES), "scene.toml")?.model;
     let [width, height] = model.render.size;
     let reference = reference(&model);
@@ -36,7 +39,6 @@ pub(super) fn run() -> Result<(), Failure> {
             scene.blob.bytes().len(),
         ));
         if engine.id() == ENGINES[0].id() {
-            create_folder(Path::new(OUTPUT))?;
             picture.write_png(Path::new(OUTPUT))?;
         }
     }

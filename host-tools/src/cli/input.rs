@@ -85,7 +85,7 @@ impl SceneArguments {
         };
         let number = Prefix::read(blob.bytes()).map_err(refuse)?.kernel;
         let engine = engine::by_id(number).ok_or_else(|| {
-            let known = ENGINES.map(|engine| format!("{} ({})", engine.name(), engine.id())).join(" and ");
+            let known = ENGINES.map(|engine| format!("{} ({})", engine.name(), engine.id())).join(", ");
             Failure::input(format!(
                 "{path}: the blob is for a kernel of number {number}, and this program has {known}; make it anew with \
                  `intray prep`"
@@ -119,9 +119,7 @@ impl SceneArguments {
 
     fn options(&self) -> Options {
         let tree = TreeOptions::default();
-        Options {
-            tree: self.leaf.map_or(tree, |leaf_max| TreeOptions { leaf_max, leaf_always: true, ..tree }),
-        }
+        Options { tree: self.leaf.map_or(tree, |leaf_max| TreeOptions { leaf_max, leaf_always: true, ..tree }) }
     }
 }
 

@@ -77,10 +77,7 @@ impl Inspection {
             ("picture", format!("{}x{}", self.width, self.height)),
             ("triangles", format!("{} ({} degenerate ones left out)", self.triangles, self.degenerate)),
             ("tree", format!("{} nodes, {} levels", self.nodes, self.depth)),
-            ("shading", format!(
-                "{} materials, {} lights, {} normals",
-                self.materials, self.lights, self.normals
-            )),
+            ("shading", format!("{} materials, {} lights, {} normals", self.materials, self.lights, self.normals)),
             ("needs", self.needs.join(", ")),
             ("blob", format!("{} bytes", self.blob_bytes)),
             ("  nodes", format!("{} bytes", self.bytes.nodes)),

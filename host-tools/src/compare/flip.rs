@@ -85,9 +85,7 @@ impl Observer {
         let margin = (3.0 * sigma(BLUE_YELLOW[0].1)).ceil() as u32;
         let sensitivity = |b: f64| gaussian(margin, sigma(b));
         let volume = |(a, b): (f64, f64)| {
-            let side: f64 = kernel(margin, |x| libm::exp(-x * x / (2.0 * sigma(b) * sigma(b))))
-                .iter()
-                .sum();
+            let side: f64 = kernel(margin, |x| libm::exp(-x * x / (2.0 * sigma(b) * sigma(b)))).iter().sum();
             a * (PI / b).sqrt() * side * side
         };
         let both: f64 = BLUE_YELLOW.map(volume).iter().sum();
@@ -111,9 +109,7 @@ impl Observer {
             feature_radius,
             blur: gaussian(feature_radius, sd),
             edge: balanced(&kernel(feature_radius, |x| -x * bell(x))),
-            point: balanced(&kernel(feature_radius, |x| {
-                (x * x / (sd * sd) - 1.0) * bell(x)
-            })),
+            point: balanced(&kernel(feature_radius, |x| (x * x / (sd * sd) - 1.0) * bell(x))),
             most: libm::pow(hyab(colour(DVec3::Y), colour(DVec3::Z)), COLOUR_EXPONENT),
         }
     }
@@ -123,29 +119,19 @@ impl Observer {
         // The opponent space YCxCz but for its scales and offset: the filters sum to 1, so those cancel.
         let plane = |value: fn(DVec3) -> f64| {
             Plane::of_band(picture, first_row, rows, self.margin, |pixel| {
-                value(
-                    self.to_xyz
-                        * DVec3::from_array(pixel.map(|byte| self.linear[usize::from(byte)])),
-                )
+                value(self.to_xyz * DVec3::from_array(pixel.map(|byte| self.linear[usize::from(byte)])))
             })
         };
         let luminance = plane(|xyz| xyz.y);
         let y = luminance.filtered(&self.achromatic);
         let x_y = plane(|xyz| xyz.x - xyz.y).filtered(&self.red_green);
         let opponent = plane(|xyz| xyz.y - xyz.z);
-        let y_z = self
-            .blue_yellow
-            .each_ref()
-            .map(|(weight, kernel)| (weight, opponent.filtered(kernel)));
+        let y_z = self.blue_yellow.each_ref().map(|(weight, kernel)| (weight, opponent.filtered(kernel)));
 
         let luminance = luminance.without_margin(self.margin - self.feature_radius);
         let blurred = luminance.along_rows(&self.blur);
-        let responses = |kernel: &Kernel| {
-            (
-                luminance.along_rows(kernel).along_columns(&self.blur),
-                blurred.along_columns(kernel),
-            )
-        };
+        let responses =
+            |kernel: &Kernel| (luminance.along_rows(kernel).along_columns(&self.blur), blurred.along_columns(kernel));
         let (edges, points) = (responses(&self.edge), responses(&self.point));
         let norm = |(x, y): &(Plane, Plane), i: usize| {
             let (x, y) = (x.values()[i], y.values()[i]);
@@ -155,10 +141,7 @@ impl Observer {
         (0..y.values().len())
             .map(|i| {
                 let y = y.values()[i];
-                let y_z: f64 = y_z
-                    .iter()
-                    .map(|(weight, plane)| *weight * plane.values()[i])
-                    .sum();
+                let y_z: f64 = y_z.iter().map(|(weight, plane)| *weight * plane.values()[i]).sum();
                 let rgb = self.to_rgb * DVec3::new(y + x_y.values()[i], y, y - y_z);
                 Percept {
                     colour: hunt_adjusted_lab(self.to_xyz * rgb.clamp(DVec3::ZERO, DVec3::ONE)),
@@ -186,13 +169,8 @@ impl Observer {
 /// CIELAB of a colour relative to the white point, its chroma scaled by lightness (Hunt's effect).
 fn hunt_adjusted_lab(xyz: DVec3) -> DVec3 {
     const DELTA: f64 = 6.0 / 29.0;
-    let compressed = xyz.map(|t| {
-        if t > DELTA * DELTA * DELTA {
-            libm::cbrt(t)
-        } else {
-            t / (3.0 * DELTA * DELTA) + 4.0 / 29.0
-        }
-    });
+    let compressed =
+        xyz.map(|t| if t > DELTA * DELTA * DELTA { libm::cbrt(t) } else { t / (3.0 * DELTA * DELTA) + 4.0 / 29.0 });
     let lightness = 116.0 * compressed.y - 16.0;
     let chroma = 0.01 * lightness;
     DVec3::new(
@@ -212,16 +190,7 @@ fn hyab(a: DVec3, b: DVec3) -> f64 {
 fn balanced(kernel: &[f64]) -> Kernel {
     let positive: f64 = kernel.iter().filter(|weight| **weight > 0.0).sum();
     let negative: f64 = kernel.iter().filter(|weight| **weight < 0.0).sum();
-    kernel
-        .iter()
-        .map(|&weight| {
-            if weight > 0.0 {
-                weight / positive
-            } else {
-                weight / -negative
-            }
-        })
-        .collect()
+    kernel.iter().map(|&weight| if weight > 0.0 { weight / positive } else { weight / -negative }).collect()
 }
 
 #[cfg(test)]
@@ -229,13 +198,7 @@ mod tests {
     use super::*;
 
     fn gradient() -> Picture {
-        Picture::from_fn(64, 100, |x, y| {
-            [
-                (x * 255 / 63) as u8,
-                (y * 255 / 99) as u8,
-                ((x + y) * 255 / 162) as u8,
-            ]
-        })
+        Picture::from_fn(64, 100, |x, y| [(x * 255 / 63) as u8, (y * 255 / 99) as u8, ((x + y) * 255 / 162) as u8])
     }
 
     fn noise(seed: u32, amplitude: u32) -> Picture {
@@ -255,11 +218,7 @@ mod tests {
             *pixel = core::array::from_fn(|channel| pixel[channel].saturating_add(noise[channel]));
         }
         let mut dotted = gradient();
-        dotted
-            .pixels_mut()
-            .iter_mut()
-            .step_by(97)
-            .for_each(|pixel| *pixel = [255; 3]);
+        dotted.pixels_mut().iter_mut().step_by(97).for_each(|pixel| *pixel = [255; 3]);
         let checks = Picture::from_fn(64, 100, |x, y| match (x / 5 + y / 7) % 2 {
             0 => [200, 180, 40],
             _ => [30, 60, 90],
@@ -271,10 +230,7 @@ mod tests {
             ("two noises", noise(1, 255), noise(2, 255), 0.43572091),
         ] {
             let flip = mean(&a, &b);
-            assert!(
-                (flip - expected).abs() < 1e-6,
-                "{name}: {flip} for {expected}"
-            );
+            assert!((flip - expected).abs() < 1e-6, "{name}: {flip} for {expected}");
         }
     }
 
@@ -289,10 +245,7 @@ mod tests {
             ([100; 3], [101; 3], 0.03078891),
         ] {
             let flip = mean(&flat(a), &flat(b));
-            assert!(
-                (flip - expected).abs() < 2e-5,
-                "{a:?} {b:?}: {flip} for {expected}"
-            );
+            assert!((flip - expected).abs() < 2e-5, "{a:?} {b:?}: {flip} for {expected}");
         }
     }
 }

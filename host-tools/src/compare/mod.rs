@@ -52,21 +52,11 @@ pub struct SizeMismatch(pub (u32, u32), pub (u32, u32));
 /// [`SizeMismatch`] where the sizes differ.
 pub fn compare(a: &Picture, b: &Picture) -> Result<Comparison, SizeMismatch> {
     let gray = difference(a, b)?;
-    let over = |threshold| {
-        gray.pixels()
-            .iter()
-            .filter(|pixel| pixel[0] > threshold)
-            .count() as u64
-    };
+    let over = |threshold| gray.pixels().iter().filter(|pixel| pixel[0] > threshold).count() as u64;
 
     // Exact: 2^26 pixels of three channels stay below 2^44.
     let (mut max_abs, mut sum, mut squares) = (0, 0u64, 0u64);
-    for (&a, &b) in a
-        .pixels()
-        .as_flattened()
-        .iter()
-        .zip(b.pixels().as_flattened())
-    {
+    for (&a, &b) in a.pixels().as_flattened().iter().zip(b.pixels().as_flattened()) {
         let error = a.abs_diff(b);
         max_abs = max_abs.max(error);
         sum += u64::from(error);
@@ -100,14 +90,8 @@ pub fn difference(a: &Picture, b: &Picture) -> Result<Picture, SizeMismatch> {
         return Err(SizeMismatch(size(a), size(b)));
     }
     let mut gray = Picture::new(a.width(), a.height());
-    for (gray, (a, b)) in gray
-        .pixels_mut()
-        .iter_mut()
-        .zip(a.pixels().iter().zip(b.pixels()))
-    {
-        let sum = (0..3).fold(0u8, |sum, channel| {
-            sum.saturating_add(a[channel].abs_diff(b[channel]))
-        });
+    for (gray, (a, b)) in gray.pixels_mut().iter_mut().zip(a.pixels().iter().zip(b.pixels())) {
+        let sum = (0..3).fold(0u8, |sum, channel| sum.saturating_add(a[channel].abs_diff(b[channel])));
         *gray = [sum; 3];
     }
     Ok(gray)
@@ -164,10 +148,7 @@ mod tests {
     fn equal_pictures_are_at_no_distance() {
         let picture = noise(1, 70, 67);
         let same = compare(&picture, &picture.clone()).unwrap();
-        assert_eq!(
-            (same.max_abs, same.mean_abs, same.rmse, same.psnr),
-            (0, 0.0, 0.0, None)
-        );
+        assert_eq!((same.max_abs, same.mean_abs, same.rmse, same.psnr), (0, 0.0, 0.0, None));
         assert_eq!((same.ssim, same.flip), (1.0, 0.0));
         assert_eq!((same.over_1, same.over_4, same.over_64), (0, 0, 0));
     }
@@ -178,10 +159,7 @@ mod tests {
         let mut other = black.clone();
         other.pixels_mut()[1] = [3, 0, 4];
         let c = compare(&black, &other).unwrap();
-        assert_eq!(
-            (c.max_abs, c.mean_abs, c.rmse),
-            (4, 7.0 / 6.0, (25.0f64 / 6.0).sqrt())
-        );
+        assert_eq!((c.max_abs, c.mean_abs, c.rmse), (4, 7.0 / 6.0, (25.0f64 / 6.0).sqrt()));
         assert!((c.psnr.unwrap() - 41.9329).abs() < 1e-4, "{:?}", c.psnr);
         assert_eq!((c.over_1, c.over_4, c.over_64), (1, 1, 0));
     }
@@ -190,27 +168,13 @@ mod tests {
     fn thresholds_are_strict_and_on_the_clipped_sum() {
         let black = Picture::new(6, 1);
         let mut other = black.clone();
-        other.pixels_mut().copy_from_slice(&[
-            [1, 0, 0],
-            [1, 0, 1],
-            [4, 0, 0],
-            [3, 2, 0],
-            [32; 3],
-            [255; 3],
-        ]);
+        other.pixels_mut().copy_from_slice(&[[1, 0, 0], [1, 0, 1], [4, 0, 0], [3, 2, 0], [32; 3], [255; 3]]);
         let gray = difference(&other, &black).unwrap();
-        assert_eq!(
-            gray.pixels(),
-            [[1; 3], [2; 3], [4; 3], [5; 3], [96; 3], [255; 3]]
-        );
+        assert_eq!(gray.pixels(), [[1; 3], [2; 3], [4; 3], [5; 3], [96; 3], [255; 3]]);
         let c = compare(&black, &other).unwrap();
         assert_eq!((c.over_1, c.over_4, c.over_64), (5, 3, 2));
         other.pixels_mut()[4] = [22, 21, 21];
-        assert_eq!(
-            compare(&black, &other).unwrap().over_64,
-            1,
-            "64 is not over 64"
-        );
+        assert_eq!(compare(&black, &other).unwrap().over_64, 1, "64 is not over 64");
     }
 
     #[test]
@@ -219,10 +183,7 @@ mod tests {
         let c = compare(&a, &b).unwrap();
         assert_eq!(compare(&b, &a).unwrap(), c);
         for threads in [1, 3] {
-            let pool = rayon::ThreadPoolBuilder::new()
-                .num_threads(threads)
-                .build()
-                .unwrap();
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             assert_eq!(pool.install(|| compare(&a, &b)).unwrap(), c);
         }
     }
@@ -238,9 +199,7 @@ mod tests {
 
     #[test]
     fn json_and_table_bear_every_name() {
-        let names = [
-            "max_abs", "mean_abs", "rmse", "psnr", "ssim", "flip", "over_1", "over_4", "over_64",
-        ];
+        let names = ["max_abs", "mean_abs", "rmse", "psnr", "ssim", "flip", "over_1", "over_4", "over_64"];
         let equal = compare(&Picture::new(3, 3), &Picture::new(3, 3)).unwrap();
         let json = serde_json::to_value(equal).unwrap();
         assert!(json["psnr"].is_null());

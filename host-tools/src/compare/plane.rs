@@ -44,14 +44,8 @@ impl Plane {
         let width = picture.width() as usize;
         let mut values = Vec::with_capacity(width * (rows + 2 * margin) as usize);
         for row in 0..rows + 2 * margin {
-            let y = (first_row + row)
-                .saturating_sub(margin)
-                .min(picture.height() - 1) as usize;
-            values.extend(
-                picture.pixels()[y * width..][..width]
-                    .iter()
-                    .map(|&pixel| value(pixel)),
-            );
+            let y = (first_row + row).saturating_sub(margin).min(picture.height() - 1) as usize;
+            values.extend(picture.pixels()[y * width..][..width].iter().map(|&pixel| value(pixel)));
         }
         Self::new(width, values)
     }
@@ -64,22 +58,12 @@ impl Plane {
     /// The same without the first and last `margin` rows.
     pub(super) fn without_margin(&self, margin: u32) -> Self {
         let cut = margin as usize * self.width;
-        Self::new(
-            self.width,
-            self.values[cut..self.values.len() - cut].to_vec(),
-        )
+        Self::new(self.width, self.values[cut..self.values.len() - cut].to_vec())
     }
 
     /// The product with another plane of the same size, value by value.
     pub(super) fn times(&self, other: &Self) -> Self {
-        Self::new(
-            self.width,
-            self.values
-                .iter()
-                .zip(&other.values)
-                .map(|(a, b)| a * b)
-                .collect(),
-        )
+        Self::new(self.width, self.values.iter().zip(&other.values).map(|(a, b)| a * b).collect())
     }
 
     /// Correlates each row with `kernel`, with the row's ends repeated beyond it.
@@ -151,10 +135,7 @@ mod tests {
     fn a_band_repeats_the_rows_at_the_border() {
         let picture = Picture::from_fn(2, 3, |x, y| [(10 * y + x) as u8, 0, 0]);
         let band = Plane::of_band(&picture, 1, 2, 2, |pixel| f64::from(pixel[0]));
-        assert_eq!(
-            band.values(),
-            [0., 1., 0., 1., 10., 11., 20., 21., 20., 21., 20., 21.]
-        );
+        assert_eq!(band.values(), [0., 1., 0., 1., 10., 11., 20., 21., 20., 21., 20., 21.]);
     }
 
     #[test]
@@ -165,10 +146,6 @@ mod tests {
         assert!((weights[5] - 0.266_011_7).abs() < 1e-7, "{}", weights[5]);
         let flat = Plane::new(3, vec![7.0; 3 * 11]).filtered(&weights);
         assert_eq!(flat.values().len(), 3);
-        assert!(
-            flat.values()
-                .iter()
-                .all(|value| (value - 7.0).abs() < 1e-12)
-        );
+        assert!(flat.values().iter().all(|value| (value - 7.0).abs() < 1e-12));
     }
 }

@@ -54,15 +54,8 @@ mod tests {
 
     #[test]
     fn a_negative_is_anticorrelated() {
-        let checks = |flip: bool| {
-            Picture::from_fn(40, 40, |x, y| {
-                if ((x + y) % 2 == 0) ^ flip {
-                    [160; 3]
-                } else {
-                    [96; 3]
-                }
-            })
-        };
+        let checks =
+            |flip: bool| Picture::from_fn(40, 40, |x, y| if ((x + y) % 2 == 0) ^ flip { [160; 3] } else { [96; 3] });
         assert_eq!(mean(&checks(false), &checks(false)), 1.0);
         assert!(mean(&checks(false), &checks(true)) < -0.8);
     }
@@ -71,30 +64,24 @@ mod tests {
     #[test]
     fn it_is_its_definition() {
         let [a, b] = [(3, 5), (7, 2)].map(|(p, q)| {
-            Picture::from_fn(9, 70, |x, y| {
-                [(x * x * p + y * q) as u8, (x * 20 + y) as u8, (y * p) as u8]
-            })
+            Picture::from_fn(9, 70, |x, y| [(x * x * p + y * q) as u8, (x * 20 + y) as u8, (y * p) as u8])
         });
-        let at = |picture: &Picture, x: i32, y: i32| {
-            luma(picture.pixels()[(y.clamp(0, 69) * 9 + x.clamp(0, 8)) as usize])
-        };
+        let at =
+            |picture: &Picture, x: i32, y: i32| luma(picture.pixels()[(y.clamp(0, 69) * 9 + x.clamp(0, 8)) as usize]);
         let offsets = || (-5..=5).flat_map(|dy| (-5..=5).map(move |dx| (dx, dy)));
         let weight = |(dx, dy): (i32, i32)| (-f64::from(dx * dx + dy * dy) / 4.5).exp();
         let total: f64 = offsets().map(weight).sum();
         let mut expected = 0.0;
         for (x, y) in (0..70).flat_map(|y| (0..9).map(move |x| (x, y))) {
             let expectation = |f: &dyn Fn(f64, f64) -> f64| -> f64 {
-                let term = |d: (i32, i32)| {
-                    weight(d) * f(at(&a, x + d.0, y + d.1), at(&b, x + d.0, y + d.1))
-                };
+                let term = |d: (i32, i32)| weight(d) * f(at(&a, x + d.0, y + d.1), at(&b, x + d.0, y + d.1));
                 offsets().map(term).sum::<f64>() / total
             };
             let (ma, mb) = (expectation(&|a, _| a), expectation(&|_, b| b));
             let va = expectation(&|a, _| (a - ma) * (a - ma));
             let vb = expectation(&|_, b| (b - mb) * (b - mb));
             let cov = expectation(&|a, b| (a - ma) * (b - mb));
-            expected += (2.0 * ma * mb + C1) * (2.0 * cov + C2)
-                / ((ma * ma + mb * mb + C1) * (va + vb + C2));
+            expected += (2.0 * ma * mb + C1) * (2.0 * cov + C2) / ((ma * ma + mb * mb + C1) * (va + vb + C2));
         }
         assert!((mean(&a, &b) - expected / 630.0).abs() < 1e-9);
     }

@@ -31,17 +31,8 @@ impl Bounds {
     /// The box around some points; around none, a point at the origin.
     pub(super) fn of(points: &[DVec3]) -> Self {
         let first = points.first().copied().unwrap_or_default();
-        let around = |b: Self, &p: &DVec3| Self {
-            low: b.low.min(p),
-            high: b.high.max(p),
-        };
-        points.iter().fold(
-            Self {
-                low: first,
-                high: first,
-            },
-            around,
-        )
+        let around = |b: Self, &p: &DVec3| Self { low: b.low.min(p), high: b.high.max(p) };
+        points.iter().fold(Self { low: first, high: first }, around)
     }
 
     /// The length of the diagonal, scene units.
@@ -80,10 +71,7 @@ impl Document {
             let message = "height goes with an orthographic projection; use fov_y";
             return Err(self.error(height.span(), message));
         }
-        let degrees = camera
-            .fov_y
-            .as_ref()
-            .map_or(FOV_Y, |fov_y| fov_y.get_ref().0);
+        let degrees = camera.fov_y.as_ref().map_or(FOV_Y, |fov_y| fov_y.get_ref().0);
         let place = camera.fov_y.as_ref().map_or(table.span(), Spanned::span);
         if !(degrees > 0.0 && degrees < 180.0) {
             let message = format!("fov_y of {degrees} degrees; it must be above 0 and below 180");
@@ -93,12 +81,9 @@ impl Document {
         let (position, look_at) = match (&camera.position, &camera.look_at) {
             (Some(position), Some(look_at)) => (self.point(position)?, self.point(look_at)?),
             (None, None) => {
-                let position = bounds.camera_position(fov_y).ok_or_else(|| {
-                    self.error(
-                        place,
-                        "fov_y is too narrow to frame the scene; give a position",
-                    )
-                })?;
+                let position = bounds
+                    .camera_position(fov_y)
+                    .ok_or_else(|| self.error(place, "fov_y is too narrow to frame the scene; give a position"))?;
                 (position, bounds.centre())
             }
             (Some(given), None) => {
@@ -122,12 +107,7 @@ impl Document {
             let message = "up is parallel to the view; give an up that is upwards in the picture";
             return Err(self.error(place, message));
         }
-        Ok(Camera {
-            position,
-            look_at,
-            up,
-            fov_y,
-        })
+        Ok(Camera { position, look_at, up, fov_y })
     }
 }
 
@@ -168,72 +148,33 @@ mod tests {
                 "[camera]\nposition = [1, 1, 1]\nlook_at = [1, 1, 1]",
                 "4: the camera is at its own look_at; move one of them",
             ),
-            (
-                "[camera]\nposition = [1, 1, 1]\nlook_at = [1, 9, 1]",
-                &format!("2: {parallel}"),
-            ),
-            (
-                "[camera]\nposition = [1, 1, 1]\nlook_at = [1, 1, 9]\nup = [0, 0, -3]",
-                &format!("5: {parallel}"),
-            ),
-            (
-                "[camera]\nup = [0, 0, 0]",
-                "3: up [0, 0, 0] is not a direction; give one of length 1 or so",
-            ),
+            ("[camera]\nposition = [1, 1, 1]\nlook_at = [1, 9, 1]", &format!("2: {parallel}")),
+            ("[camera]\nposition = [1, 1, 1]\nlook_at = [1, 1, 9]\nup = [0, 0, -3]", &format!("5: {parallel}")),
+            ("[camera]\nup = [0, 0, 0]", "3: up [0, 0, 0] is not a direction; give one of length 1 or so"),
             (
                 "[camera]\nposition = [0, 0, 2e30]\nlook_at = [0, 0, 0]",
                 "3: [0, 0, 2000000000000000000000000000000] is beyond 1e30",
             ),
-            (
-                "[camera]\nposition = [0, 0, 9]",
-                "3: a position needs a look_at as well",
-            ),
-            (
-                "[camera]\nlook_at = [0, 0, 9]",
-                "3: a look_at needs a position as well",
-            ),
-            (
-                "[camera]\nfov_y = 0",
-                "3: fov_y of 0 degrees; it must be above 0 and below 180",
-            ),
-            (
-                "[camera]\nfov_y = 180.0",
-                "3: fov_y of 180 degrees; it must be above 0 and below 180",
-            ),
-            (
-                "[camera]\nfov_y = 400",
-                "3: fov_y of 400 degrees; it must be above 0 and below 180",
-            ),
-            (
-                "[camera]\nfov_y = -40",
-                "3: fov_y of -40 degrees; it must be above 0 and below 180",
-            ),
-            (
-                "[camera]\nfov_y = 1e-300",
-                "3: fov_y is too narrow to frame the scene; give a position",
-            ),
+            ("[camera]\nposition = [0, 0, 9]", "3: a position needs a look_at as well"),
+            ("[camera]\nlook_at = [0, 0, 9]", "3: a look_at needs a position as well"),
+            ("[camera]\nfov_y = 0", "3: fov_y of 0 degrees; it must be above 0 and below 180"),
+            ("[camera]\nfov_y = 180.0", "3: fov_y of 180 degrees; it must be above 0 and below 180"),
+            ("[camera]\nfov_y = 400", "3: fov_y of 400 degrees; it must be above 0 and below 180"),
+            ("[camera]\nfov_y = -40", "3: fov_y of -40 degrees; it must be above 0 and below 180"),
+            ("[camera]\nfov_y = 1e-300", "3: fov_y is too narrow to frame the scene; give a position"),
             (
                 "[camera]\nprojection = 'orthographic'",
                 "3: orthographic projection is not supported yet; use \"perspective\"",
             ),
-            (
-                "[camera]\nheight = 2",
-                "3: height goes with an orthographic projection; use fov_y",
-            ),
+            ("[camera]\nheight = 2", "3: height goes with an orthographic projection; use fov_y"),
         ]);
     }
 
     #[test]
     fn a_camera_table_without_a_place_keeps_the_framing_for_its_angle() {
-        let camera = room("[camera]\nfov_y = 60\nup = [0, 0, 1]")
-            .unwrap()
-            .model
-            .camera;
+        let camera = room("[camera]\nfov_y = 60\nup = [0, 0, 1]").unwrap().model.camera;
         let distance = (camera.position - DVec3::ONE).length();
-        assert!(
-            (distance - 2.0 * 3f64.sqrt()).abs() < 1e-12,
-            "sqrt 3 / sin 30 degrees"
-        );
+        assert!((distance - 2.0 * 3f64.sqrt()).abs() < 1e-12, "sqrt 3 / sin 30 degrees");
         assert_eq!(camera.look_at, DVec3::ONE);
         assert_eq!(camera.up, DVec3::Z);
     }

@@ -23,11 +23,7 @@ pub(super) struct Document {
 impl Document {
     /// The settings of a scene that has no file for them; `file` is its OBJ.
     pub(super) fn absent(file: String) -> Self {
-        Self {
-            file,
-            scene: SceneToml::default(),
-            text: String::new(),
-        }
+        Self { file, scene: SceneToml::default(), text: String::new() }
     }
 
     /// Parses the contents of `file`.
@@ -69,10 +65,7 @@ impl Document {
             Ok(_) => return Ok(obj),
             Err(error) => reason(&error),
         };
-        Err(self.error(
-            model.span(),
-            format!("model {}: {wrong}", source.describe(&obj)),
-        ))
+        Err(self.error(model.span(), format!("model {}: {wrong}", source.describe(&obj))))
     }
 
     /// The line of a place in the text.
@@ -86,12 +79,7 @@ impl Document {
     }
 
     /// A whole number, not less than `least`.
-    pub(super) fn count(
-        &self,
-        key: &str,
-        least: f64,
-        value: &Spanned<Number>,
-    ) -> Result<f64, ImportError> {
+    pub(super) fn count(&self, key: &str, least: f64, value: &Spanned<Number>) -> Result<f64, ImportError> {
         let Number(number) = *value.get_ref();
         if number >= least && number.fract() == 0.0 {
             return Ok(number);
@@ -110,11 +98,7 @@ impl Document {
     }
 
     /// A direction of any length but zero.
-    pub(super) fn direction(
-        &self,
-        key: &str,
-        value: &Spanned<Vector>,
-    ) -> Result<DVec3, ImportError> {
+    pub(super) fn direction(&self, key: &str, value: &Spanned<Vector>) -> Result<DVec3, ImportError> {
         let Vector(direction) = *value.get_ref();
         if (SMALLEST..=LARGEST).contains(&direction.abs().max_element()) {
             return Ok(direction);
@@ -167,11 +151,7 @@ fn explain(message: &str) -> String {
     };
     let given = quoted.next().unwrap_or_default();
     let nearest = quoted.min_by_key(|known| strsim::damerau_levenshtein(given, known));
-    format!(
-        "{what} `{}`; the nearest known one is `{}`",
-        excerpt(given),
-        nearest.unwrap_or_default()
-    )
+    format!("{what} `{}`; the nearest known one is `{}`", excerpt(given), nearest.unwrap_or_default())
 }
 
 #[cfg(test)]
@@ -180,78 +160,30 @@ mod tests {
     use crate::import::testing::scene;
 
     fn fault(text: &[u8]) -> String {
-        Document::parse("x.toml".into(), text.to_vec())
-            .unwrap_err()
-            .to_string()
+        Document::parse("x.toml".into(), text.to_vec()).unwrap_err().to_string()
     }
 
     #[test]
     fn every_fault_of_form_has_its_line() {
         let cases = [
-            (
-                "model = 'a'\nmodle = 'b'",
-                "2: unknown key `modle`; the nearest known one is `model`",
-            ),
-            (
-                "\n[camera]\nfov = 40",
-                "3: unknown key `fov`; the nearest known one is `fov_y`",
-            ),
-            (
-                "[[light]]\n[[light]]\ncolor = 1",
-                "3: unknown key `color`; the nearest known one is `colour`",
-            ),
-            (
-                "[[light]]\nkind = 'pint'",
-                "2: unknown value `pint`; the nearest known one is `point`",
-            ),
-            (
-                "[material.a]\nkind = 'glass'",
-                "2: unknown value `glass`; the nearest known one is `metal`",
-            ),
-            (
-                "transfer = 'SRGB'",
-                "1: unknown value `SRGB`; the nearest known one is `srgb`",
-            ),
+            ("model = 'a'\nmodle = 'b'", "2: unknown key `modle`; the nearest known one is `model`"),
+            ("\n[camera]\nfov = 40", "3: unknown key `fov`; the nearest known one is `fov_y`"),
+            ("[[light]]\n[[light]]\ncolor = 1", "3: unknown key `color`; the nearest known one is `colour`"),
+            ("[[light]]\nkind = 'pint'", "2: unknown value `pint`; the nearest known one is `point`"),
+            ("[material.a]\nkind = 'glass'", "2: unknown value `glass`; the nearest known one is `metal`"),
+            ("transfer = 'SRGB'", "1: unknown value `SRGB`; the nearest known one is `srgb`"),
             ("[camera]\nfov_y = nan", "2: NaN is not a finite number"),
-            (
-                "[camera]\nposition = [0,\n1, inf]",
-                "3: inf is not a finite number",
-            ),
-            (
-                "[camera]\nposition = [0, 1]",
-                "2: invalid length 2, expected three numbers such as [0, 1, 5]",
-            ),
-            (
-                "[camera]\nup = [0, 1, 0, 0]",
-                "2: invalid length 4, expected three numbers such as [0, 1, 5]",
-            ),
-            (
-                "[camera]\nfov_y = '40'",
-                "2: invalid type: string \"40\", expected a number",
-            ),
-            (
-                "model = 3",
-                "1: invalid type: integer `3`, expected a string",
-            ),
-            (
-                "camera = 3",
-                "1: invalid type: integer `3`, expected a table such as [camera]",
-            ),
-            (
-                "[light]\nkind = 'point'",
-                "1: there may be several of these; double the brackets, such as [[light]]",
-            ),
-            (
-                "[render]\nsamples = true",
-                "2: invalid type: boolean `true`, expected a number",
-            ),
+            ("[camera]\nposition = [0,\n1, inf]", "3: inf is not a finite number"),
+            ("[camera]\nposition = [0, 1]", "2: invalid length 2, expected three numbers such as [0, 1, 5]"),
+            ("[camera]\nup = [0, 1, 0, 0]", "2: invalid length 4, expected three numbers such as [0, 1, 5]"),
+            ("[camera]\nfov_y = '40'", "2: invalid type: string \"40\", expected a number"),
+            ("model = 3", "1: invalid type: integer `3`, expected a string"),
+            ("camera = 3", "1: invalid type: integer `3`, expected a table such as [camera]"),
+            ("[light]\nkind = 'point'", "1: there may be several of these; double the brackets, such as [[light]]"),
+            ("[render]\nsamples = true", "2: invalid type: boolean `true`, expected a number"),
         ];
         for (text, expected) in cases {
-            assert_eq!(
-                fault(text.as_bytes()),
-                format!("x.toml:{expected}"),
-                "{text}"
-            );
+            assert_eq!(fault(text.as_bytes()), format!("x.toml:{expected}"), "{text}");
         }
         assert!(fault(b"model = 'a'\n[camera\n").starts_with("x.toml:2: "));
         assert!(fault(b"model = 'a'\nmodel = 'b'\n").starts_with("x.toml:2: "));
@@ -260,35 +192,16 @@ mod tests {
     #[test]
     fn what_is_not_text_is_refused() {
         assert_eq!(fault(b""), "x.toml: the file is empty");
-        assert_eq!(
-            fault(b"\xff\xfem\0"),
-            "x.toml: the file is UTF-16; save it as UTF-8 text"
-        );
-        assert_eq!(
-            fault(b"model = 'a'\n# \xff"),
-            "x.toml:2: this is not UTF-8 text"
-        );
+        assert_eq!(fault(b"\xff\xfem\0"), "x.toml: the file is UTF-16; save it as UTF-8 text");
+        assert_eq!(fault(b"model = 'a'\n# \xff"), "x.toml:2: this is not UTF-8 text");
     }
 
     #[test]
     fn every_key_of_the_format_is_known() {
         let text = include_bytes!("every_key.toml");
-        let scene = Document::parse("x.toml".into(), text.to_vec())
-            .unwrap()
-            .scene;
+        let scene = Document::parse("x.toml".into(), text.to_vec()).unwrap().scene;
         assert_eq!(scene.sphere.len(), 1);
-        assert_eq!(
-            scene
-                .camera
-                .unwrap()
-                .get_ref()
-                .fov_y
-                .as_ref()
-                .unwrap()
-                .get_ref()
-                .0,
-            40.0
-        );
+        assert_eq!(scene.camera.unwrap().get_ref().fov_y.as_ref().unwrap().get_ref().0, 40.0);
     }
 
     #[test]
@@ -296,18 +209,9 @@ mod tests {
         let missing = "1: `model` is missing; name an OBJ file, such as model = \"room.obj\"";
         let cases = [
             ("transfer = 'srgb'", missing),
-            (
-                "\nmodel = 'no.obj'",
-                "2: model built-in no.obj: no such file",
-            ),
-            (
-                "model = 'room.ply'",
-                "1: model built-in room.ply: a model is an .obj file",
-            ),
-            (
-                "model = 'room.obj'\n[[sphere]]\ncentre = [0, 1, 0]\nradius = 0.5",
-                "2: spheres are not supported yet",
-            ),
+            ("\nmodel = 'no.obj'", "2: model built-in no.obj: no such file"),
+            ("model = 'room.ply'", "1: model built-in room.ply: a model is an .obj file"),
+            ("model = 'room.obj'\n[[sphere]]\ncentre = [0, 1, 0]\nradius = 0.5", "2: spheres are not supported yet"),
         ];
         for (text, expected) in cases {
             let expected = format!("built-in s.toml:{expected}");

@@ -75,19 +75,12 @@ pub enum ImportError {
 impl ImportError {
     /// An error in one line of a file.
     pub(super) fn line(file: &str, line: u64, message: impl Into<String>) -> Self {
-        Self::Line {
-            file: file.into(),
-            line,
-            message: message.into(),
-        }
+        Self::Line { file: file.into(), line, message: message.into() }
     }
 
     /// A file that could not be opened or read.
     pub(super) fn unreadable(file: &str, source: io::Error) -> Self {
-        Self::Unreadable {
-            file: file.into(),
-            source,
-        }
+        Self::Unreadable { file: file.into(), source }
     }
 }
 
@@ -122,9 +115,7 @@ impl fmt::Display for Warning {
 pub(super) fn reason(error: &io::Error) -> String {
     match error.kind() {
         io::ErrorKind::NotFound => "no such file".into(),
-        io::ErrorKind::IsADirectory => {
-            "this is a folder; name the .toml or .obj file in it".into()
-        }
+        io::ErrorKind::IsADirectory => "this is a folder; name the .toml or .obj file in it".into(),
         io::ErrorKind::PermissionDenied => "permission denied".into(),
         _ => error.to_string(),
     }
@@ -133,11 +124,7 @@ pub(super) fn reason(error: &io::Error) -> String {
 /// Names for a message: the first three in backquotes, and how many more there are.
 pub(super) fn list<S: AsRef<str>>(names: &[S]) -> String {
     const SHOWN: usize = 3;
-    let shown: Vec<String> = names
-        .iter()
-        .take(SHOWN)
-        .map(|name| format!("`{}`", excerpt(name.as_ref())))
-        .collect();
+    let shown: Vec<String> = names.iter().take(SHOWN).map(|name| format!("`{}`", excerpt(name.as_ref()))).collect();
     match names.len().saturating_sub(SHOWN) {
         0 => shown.join(", "),
         more => format!("{} and {more} more", shown.join(", ")),

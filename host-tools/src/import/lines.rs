@@ -11,6 +11,9 @@ use std::io::{self, BufRead, Read};
 use super::error::{ImportError, excerpt};
 use super::source::Source;
 
+/// Bytes: more than any face has, and no more than memory is to be taken for. A guard against `/dev/zero` and the like.
+const LONGEST_LINE: u64 = 1 << 24;
+
 /// The statements of a text file, one by one: comments and blank lines left out, lines that end in
 /// a backslash joined to the next.
 pub(super) struct Lines<'a> {
@@ -33,12 +36,7 @@ impl<'a> Lines<'a> {
     /// Opens a file.
     pub(super) fn open(source: &'a dyn Source, name: &str) -> io::Result<Self> {
         let input = source.open(name)?;
-        Ok(Self {
-            file: source.describe(name),
-            input,
-            text: Vec::new(),
-            read: 0,
-        })
+        Ok(Self { file: source.describe(name), input, text: Vec::new(), read: 0 })
     }
 
     /// Whether the file had no byte, once [`next`](Self::next) has returned `None`.
@@ -71,25 +69,21 @@ impl<'a> Lines<'a> {
             }
             break line;
         };
-        Ok(Some(Statement {
-            line,
-            text: String::from_utf8_lossy(&self.text),
-        }))
+        Ok(Some(Statement { line, text: String::from_utf8_lossy(&self.text) }))
     }
 
     /// Appends one line of the file, without its end, to the text; false at the end of the file.
     fn append(&mut self) -> Result<bool, ImportError> {
         let start = self.text.len();
-        let read = self.input.read_until(b'\n', &mut self.text);
-        if read.map_err(|error| ImportError::unreadable(&self.file, error))? == 0 {
+        let read = self.input.by_ref().take(LONGEST_LINE).read_until(b'\n', &mut self.text);
+        let read = read.map_err(|error| ImportError::unreadable(&self.file, error))?;
+        if read == 0 {
             return Ok(false);
         }
         self.read += 1;
         if self.read == 1 {
             if self.text.starts_with(b"\xff\xfe") || self.text.starts_with(b"\xfe\xff") {
-                return Err(ImportError::Utf16 {
-                    file: self.file.clone(),
-                });
+                return Err(ImportError::Utf16 { file: self.file.clone() });
             }
             if self.text.starts_with(b"\xef\xbb\xbf") {
                 self.text.drain(..3);
@@ -99,6 +93,9 @@ impl<'a> Lines<'a> {
         if line.contains(&0) {
             let message = "a zero byte; this is a binary file or UTF-16, not UTF-8 text";
             return Err(ImportError::line(&self.file, self.read, message));
+        }
+        if read as u64 == LONGEST_LINE && !line.ends_with(b"\n") {
+            return Err(ImportError::line(&self.file, self.read, "a line of more than 16 MiB; this is no text file"));
         }
         self.text.truncate(start + line.trim_ascii_end().len());
         Ok(true)
@@ -113,11 +110,7 @@ impl Statement<'_> {
 
     /// All that follows the keyword: a name, which may hold spaces and `#`.
     pub(super) fn name(&self) -> &str {
-        self.text
-            .trim_start()
-            .get(self.keyword().len()..)
-            .unwrap_or_default()
-            .trim()
+        self.text.trim_start().get(self.keyword().len()..).unwrap_or_default().trim()
     }
 
     /// The words after the keyword, up to a comment.
@@ -160,12 +153,7 @@ pub(super) struct Checked<C> {
 
 impl<C: Check> Checked<C> {
     pub(super) fn new(check: C) -> Self {
-        Self {
-            check,
-            failure: None,
-            text: String::new(),
-            taken: 0,
-        }
+        Self { check, failure: None, text: String::new(), taken: 0 }
     }
 }
 
@@ -208,21 +196,14 @@ mod tests {
         let mut out = Vec::new();
         while let Some(s) = lines.next().map_err(|e| e.to_string())? {
             let words: Vec<&str> = s.words().collect();
-            out.push(format!(
-                "{} {}|{}|{}",
-                s.line,
-                s.keyword(),
-                s.name(),
-                words.join(",")
-            ));
+            out.push(format!("{} {}|{}|{}", s.line, s.keyword(), s.name(), words.join(",")));
         }
         Ok(out)
     }
 
     #[test]
     fn statements_are_joined_stripped_and_numbered() {
-        let text =
-            b"\xef\xbb\xbf# head \\\nv\t1 2 \\\r\n  3 # end\r\n\n  usemtl  a #1 b\r\n#v 9\nf \\";
+        let text = b"\xef\xbb\xbf# head \\\nv\t1 2 \\\r\n  3 # end\r\n\n  usemtl  a #1 b\r\n#v 9\nf \\";
         let statements = all(text).unwrap();
         assert_eq!(statements[0], "2 v|1 2    3 # end|1,2,3");
         assert_eq!(statements[1], "5 usemtl|a #1 b|a");
@@ -235,21 +216,18 @@ mod tests {
         let utf16 = "built-in x: the file is UTF-16; save it as UTF-8 text";
         assert_eq!(all(b"\xff\xfev\0 \0").unwrap_err(), utf16);
         assert_eq!(all(b"\xfe\xff\0v\0 ").unwrap_err(), utf16);
+        let endless = all(&vec![b'1'; (1 << 24) + 1]).unwrap_err();
+        assert_eq!(endless, "built-in x:1: a line of more than 16 MiB; this is no text file");
+        assert!(all(&[b'1'; 1 << 20]).is_ok());
         let binary = all(b"v 1 2 3\n\0\x01").unwrap_err();
-        assert_eq!(
-            binary,
-            "built-in x:2: a zero byte; this is a binary file or UTF-16, not UTF-8 text"
-        );
+        assert_eq!(binary, "built-in x:2: a zero byte; this is a binary file or UTF-16, not UTF-8 text");
         assert_eq!(all(b"o caf\xe9").unwrap(), ["1 o|caf\u{fffd}|caf\u{fffd}"]);
     }
 
     #[test]
     fn numbers_are_finite() {
         assert_eq!(number("-1.5e3"), Ok(-1500.0));
-        assert_eq!(
-            number("1e400").unwrap_err(),
-            "`1e400` is not a finite number"
-        );
+        assert_eq!(number("1e400").unwrap_err(), "`1e400` is not a finite number");
         assert_eq!(number("NaN").unwrap_err(), "`NaN` is not a finite number");
         assert_eq!(number("1,5").unwrap_err(), "`1,5` is not a number");
     }

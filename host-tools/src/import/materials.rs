@@ -41,19 +41,13 @@ impl Document {
             let colour = change.and_then(|change| change.colour.as_ref());
             let diffuse = self.colour("colour", 1.0, colour, entry.diffuse)?;
             let emission: DVec3 = entry.emission;
-            materials.push(Material {
-                name: shown(named).into(),
-                diffuse,
-                emission,
-            });
+            materials.push(Material { name: shown(named).into(), diffuse, emission });
         }
         let file = source.describe(obj);
         if let Some(first) = undefined.first() {
             let names: Vec<&str> = undefined.iter().map(|named| named.name.as_str()).collect();
-            let message = format!(
-                "materials that no MTL file defines, drawn in grey (Kd {DEFAULT_DIFFUSE}): {}",
-                list(&names)
-            );
+            let message =
+                format!("materials that no MTL file defines, drawn in grey (Kd {DEFAULT_DIFFUSE}): {}", list(&names));
             warnings.push(Warning::line(&file, first.line, message));
         }
         if !simplified.is_empty() {
@@ -88,16 +82,12 @@ impl Document {
                 let nearest = used.min_by_key(|used| strsim::damerau_levenshtein(name, used));
                 let nearest = excerpt(nearest.unwrap_or(UNNAMED));
                 let name = excerpt(name);
-                warn(format!(
-                    "no face has material `{name}`; the nearest name is `{nearest}`"
-                ));
+                warn(format!("no face has material `{name}`; the nearest name is `{nearest}`"));
             }
             let extras = extras(change);
             if !extras.is_empty() {
                 let (name, extras) = (excerpt(name), extras.join(", "));
-                warn(format!(
-                    "material `{name}` is drawn as Lambert; not supported yet: {extras}"
-                ));
+                warn(format!("material `{name}` is drawn as Lambert; not supported yet: {extras}"));
             }
         }
         Ok(())
@@ -106,11 +96,7 @@ impl Document {
 
 /// The name of a material in messages and in scene files.
 fn shown(named: &Named) -> &str {
-    if named.name.is_empty() {
-        UNNAMED
-    } else {
-        &named.name
-    }
+    if named.name.is_empty() { UNNAMED } else { &named.name }
 }
 
 /// The keys of a material that a Lambert surface has no use for.
@@ -124,10 +110,7 @@ fn extras(material: &MaterialToml) -> Vec<&'static str> {
         ("checker", material.checker.is_some()),
         ("tinted_shadow", material.tinted_shadow == Some(true)),
     ];
-    keys.into_iter()
-        .filter(|&(_, given)| given)
-        .map(|(key, _)| key)
-        .collect()
+    keys.into_iter().filter(|&(_, given)| given).map(|(key, _)| key).collect()
 }
 
 #[cfg(test)]
@@ -199,10 +182,7 @@ mod tests {
                 "[material.other]\ncolour = [0, -1, 0]",
                 "3: colour [0, -1, 0] is out of range; each channel is from 0 to 1.0",
             ),
-            (
-                "[material.wall]\nchecker = { size = 0, other = [0, 0, 0] }",
-                "3: checker size of 0; it must be above 0",
-            ),
+            ("[material.wall]\nchecker = { size = 0, other = [0, 0, 0] }", "3: checker size of 0; it must be above 0"),
         ]);
     }
 }

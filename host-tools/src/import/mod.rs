@@ -61,10 +61,7 @@ pub struct Imported {
 pub fn load(path: &Path) -> Result<Imported, ImportError> {
     let file = error::printable(&path.to_string_lossy());
     if path.is_dir() {
-        return Err(ImportError::unreadable(
-            &file,
-            io::ErrorKind::IsADirectory.into(),
-        ));
+        return Err(ImportError::unreadable(&file, io::ErrorKind::IsADirectory.into()));
     }
     let Some(name) = path.file_name().and_then(|name| name.to_str()) else {
         let message = "the name is not UTF-8; rename the file";
@@ -84,9 +81,7 @@ pub fn load_from(source: &dyn Source, name: &str) -> Result<Imported, ImportErro
     match extension(name).as_str() {
         "obj" => assemble(source, name, &Document::absent(file)),
         "toml" => {
-            let contents = source
-                .read(name)
-                .map_err(|error| ImportError::unreadable(&file, error))?;
+            let contents = source.read(name).map_err(|error| ImportError::unreadable(&file, error))?;
             let document = Document::parse(file, contents)?;
             let obj = document.model(source, name)?;
             assemble(source, &obj, &document)
@@ -102,12 +97,7 @@ fn assemble(source: &dyn Source, obj: &str, document: &Document) -> Result<Impor
     let bounds = Bounds::of(&mesh.positions);
     if bounds.diagonal() < SMALLEST {
         let [x, y, z] = bounds.low.to_array();
-        return Err(ImportError::NoExtent {
-            file: source.describe(obj),
-            x,
-            y,
-            z,
-        });
+        return Err(ImportError::NoExtent { file: source.describe(obj), x, y, z });
     }
     let materials = document.materials(source, obj, &mesh, &mut warnings)?;
     let camera = document.camera(bounds)?;
@@ -132,8 +122,5 @@ fn extension(name: &str) -> String {
 
 /// The name of a file that the file `name` calls `other`.
 fn beside(name: &str, other: &str) -> String {
-    Path::new(name)
-        .with_file_name(other)
-        .to_string_lossy()
-        .into_owned()
+    Path::new(name).with_file_name(other).to_string_lossy().into_owned()
 }

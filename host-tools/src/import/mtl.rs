@@ -29,11 +29,7 @@ pub(super) struct Entry {
 
 impl Default for Entry {
     fn default() -> Self {
-        Self {
-            diffuse: DVec3::splat(DEFAULT_DIFFUSE),
-            emission: DVec3::ZERO,
-            plain: true,
-        }
+        Self { diffuse: DVec3::splat(DEFAULT_DIFFUSE), emission: DVec3::ZERO, plain: true }
     }
 }
 
@@ -41,12 +37,7 @@ impl Default for Entry {
 pub(super) type Library = HashMap<String, Entry>;
 
 /// Reads the libraries that the OBJ `obj` names.
-pub(super) fn read(
-    source: &dyn Source,
-    obj: &str,
-    libraries: &[Named],
-    warnings: &mut Vec<Warning>,
-) -> Library {
+pub(super) fn read(source: &dyn Source, obj: &str, libraries: &[Named], warnings: &mut Vec<Warning>) -> Library {
     let mut library = Library::new();
     for named in libraries {
         for name in files(source, obj, &named.name) {
@@ -69,60 +60,36 @@ pub(super) fn read(
 /// The files that an `mtllib` names: one whose name may hold spaces, or several.
 fn files(source: &dyn Source, obj: &str, names: &str) -> Vec<String> {
     let whole = beside(obj, names);
-    let several: Vec<String> = names
-        .split_whitespace()
-        .map(|name| beside(obj, name))
-        .collect();
+    let several: Vec<String> = names.split_whitespace().map(|name| beside(obj, name)).collect();
     let there = |name: &String| source.open(name).is_ok();
-    if !there(&whole) && several.iter().any(there) {
-        several
-    } else {
-        vec![whole]
-    }
+    if !there(&whole) && several.iter().any(there) { several } else { vec![whole] }
 }
 
 /// Parses one file.
 fn parse(lines: Lines<'_>, warnings: &mut Vec<Warning>) -> Library {
-    let check = MtlCheck {
-        lines,
-        material: None,
-        warnings,
-    };
+    let check = MtlCheck { lines, material: None, warnings };
     let mut statements = Checked::new(check);
     let parsed = tobj::load_mtl_buf(&mut statements);
-    let MtlCheck {
-        lines, warnings, ..
-    } = statements.check;
+    let MtlCheck { lines, warnings, .. } = statements.check;
     let failure = match (parsed, statements.failure) {
         (Ok((materials, _)), _) => {
-            return materials
-                .iter()
-                .map(|m| (m.name.clone(), entry(m)))
-                .collect();
+            return materials.iter().map(|m| (m.name.clone(), entry(m))).collect();
         }
         (Err(_), Some(failure)) => failure.to_string(),
         (Err(error), None) => format!("{}: {error}", lines.file),
     };
-    warnings.push(Warning::text(format!(
-        "{failure}; its materials are drawn in grey"
-    )));
+    warnings.push(Warning::text(format!("{failure}; its materials are drawn in grey")));
     Library::new()
 }
 
 fn entry(material: &tobj::Material) -> Entry {
     let default = Entry::default();
     // `tobj` knows `d` but not its complement.
-    let transmission = material
-        .unknown_param
-        .get("Tr")
-        .and_then(|word| number(word).ok());
-    let opaque =
-        material.dissolve.is_none_or(|d| d >= 1.0) && transmission.is_none_or(|t| t <= 0.0);
+    let transmission = material.unknown_param.get("Tr").and_then(|word| number(word).ok());
+    let opaque = material.dissolve.is_none_or(|d| d >= 1.0) && transmission.is_none_or(|t| t <= 0.0);
     Entry {
         diffuse: material.diffuse.map_or(default.diffuse, DVec3::from_array),
-        emission: material
-            .emissive
-            .map_or(default.emission, DVec3::from_array),
+        emission: material.emissive.map_or(default.emission, DVec3::from_array),
         plain: opaque && material.diffuse_texture.is_none(),
     }
 }
@@ -143,8 +110,7 @@ impl Check for MtlCheck<'_, '_> {
             };
             let line = statement.line;
             if let Err(message) = check(&statement, &mut self.material, out) {
-                self.warnings
-                    .push(Warning::line(&self.lines.file, line, message));
+                self.warnings.push(Warning::line(&self.lines.file, line, message));
             }
         }
         Ok(())
@@ -155,11 +121,7 @@ impl Check for MtlCheck<'_, '_> {
 ///
 /// # Errors
 /// A warning: what is wrong and what is done about it. The statement may have been passed on.
-fn check(
-    statement: &Statement<'_>,
-    material: &mut Option<String>,
-    out: &mut String,
-) -> Result<(), String> {
+fn check(statement: &Statement<'_>, material: &mut Option<String>, out: &mut String) -> Result<(), String> {
     let keyword = statement.keyword();
     let word = statement.words().next().unwrap_or_default();
     match keyword {
@@ -175,26 +137,18 @@ fn check(
             let Some(name) = material else {
                 return Err(format!("{keyword} before any `newmtl` is ignored"));
             };
-            let (default, largest) = if keyword == "Kd" {
-                (DEFAULT_DIFFUSE, 1.0)
-            } else {
-                (0.0, f64::INFINITY)
-            };
+            let (default, largest) = if keyword == "Kd" { (DEFAULT_DIFFUSE, 1.0) } else { (0.0, f64::INFINITY) };
             let given = colour(statement);
-            let used = given
-                .clone()
-                .map_or([default; 3], |value| value.map(|v| v.min(largest)));
+            let used = given.clone().map_or([default; 3], |value| value.map(|v| v.min(largest)));
             *out = format!("{keyword} {} {} {}\n", used[0], used[1], used[2]);
             let name = excerpt(name);
             match given {
                 Err(wrong) => {
-                    let message =
-                        format!("{keyword} of material `{name}`: {wrong}; drawn with {default}");
+                    let message = format!("{keyword} of material `{name}`: {wrong}; drawn with {default}");
                     return Err(message);
                 }
                 Ok(value) if value != used => {
-                    let message =
-                        format!("{keyword} of material `{name}` is over 1, and is cut to 1");
+                    let message = format!("{keyword} of material `{name}` is over 1, and is cut to 1");
                     return Err(message);
                 }
                 Ok(_) => {}
@@ -210,10 +164,7 @@ fn check(
 
 /// The colour after `Kd` or `Ke`: three numbers, or one for all three channels.
 fn colour(statement: &Statement<'_>) -> Result<[f64; 3], String> {
-    let values = statement
-        .words()
-        .map(number)
-        .collect::<Result<Vec<f64>, String>>()?;
+    let values = statement.words().map(number).collect::<Result<Vec<f64>, String>>()?;
     if let Some(negative) = values.iter().find(|&&v| v < 0.0) {
         return Err(format!("{negative} is negative"));
     }
@@ -248,63 +199,26 @@ mod tests {
         let a = library["a b #1"];
         assert_eq!(a.diffuse, DVec3::new(0.1, 0.2, 0.3));
         assert_eq!(a.emission, DVec3::new(17.0, 12.0, 4.0));
-        let grey = Entry {
-            diffuse: DVec3::splat(0.5),
-            ..Entry::default()
-        };
+        let grey = Entry { diffuse: DVec3::splat(0.5), ..Entry::default() };
         assert_eq!(library["grey"], grey);
         assert_eq!(library["halo"], Entry::default());
         for name in ["glass", "film", "wood"] {
-            assert_eq!(
-                library[name],
-                Entry {
-                    plain: false,
-                    ..Entry::default()
-                },
-                "{name}"
-            );
+            assert_eq!(library[name], Entry { plain: false, ..Entry::default() }, "{name}");
         }
     }
 
     #[test]
     fn what_is_wrong_is_said_and_the_default_stands() {
         let cases: [(&[u8], &str); 9] = [
-            (
-                b"Kd 0 0 0\nnewmtl m",
-                "1: Kd before any `newmtl` is ignored",
-            ),
-            (
-                b"newmtl\nnewmtl m",
-                "1: a material without a name is ignored",
-            ),
-            (
-                b"newmtl m\nKd 1 nan 1",
-                "2: Kd of material `m`: `nan` is not a finite number; drawn with 0.8",
-            ),
-            (
-                b"newmtl m\nKd red",
-                "2: Kd of material `m`: `red` is not a number; drawn with 0.8",
-            ),
-            (
-                b"newmtl m\nKd 0.5 0.5",
-                "2: Kd of material `m`: 2 numbers where 3 are needed; drawn with 0.8",
-            ),
-            (
-                b"newmtl m\nKd",
-                "2: Kd of material `m`: 0 numbers where 3 are needed; drawn with 0.8",
-            ),
-            (
-                b"newmtl m\nKd 0 0 0\nKd 0 0 -1",
-                "3: Kd of material `m`: -1 is negative; drawn with 0.8",
-            ),
-            (
-                b"newmtl m\nKe 0 0 -1",
-                "2: Ke of material `m`: -1 is negative; drawn with 0",
-            ),
-            (
-                b"newmtl m\nKe 1e400",
-                "2: Ke of material `m`: `1e400` is not a finite number; drawn with 0",
-            ),
+            (b"Kd 0 0 0\nnewmtl m", "1: Kd before any `newmtl` is ignored"),
+            (b"newmtl\nnewmtl m", "1: a material without a name is ignored"),
+            (b"newmtl m\nKd 1 nan 1", "2: Kd of material `m`: `nan` is not a finite number; drawn with 0.8"),
+            (b"newmtl m\nKd red", "2: Kd of material `m`: `red` is not a number; drawn with 0.8"),
+            (b"newmtl m\nKd 0.5 0.5", "2: Kd of material `m`: 2 numbers where 3 are needed; drawn with 0.8"),
+            (b"newmtl m\nKd", "2: Kd of material `m`: 0 numbers where 3 are needed; drawn with 0.8"),
+            (b"newmtl m\nKd 0 0 0\nKd 0 0 -1", "3: Kd of material `m`: -1 is negative; drawn with 0.8"),
+            (b"newmtl m\nKe 0 0 -1", "2: Ke of material `m`: -1 is negative; drawn with 0"),
+            (b"newmtl m\nKe 1e400", "2: Ke of material `m`: `1e400` is not a finite number; drawn with 0"),
         ];
         for (text, expected) in cases {
             let (library, warnings) = library(text);
@@ -316,10 +230,7 @@ mod tests {
     #[test]
     fn more_than_all_light_is_cut() {
         let (library, warnings) = library(b"newmtl m\nKd 0.5 1 1.5\n");
-        assert_eq!(
-            warnings,
-            ["built-in x.mtl:2: Kd of material `m` is over 1, and is cut to 1"]
-        );
+        assert_eq!(warnings, ["built-in x.mtl:2: Kd of material `m` is over 1, and is cut to 1"]);
         assert_eq!(library["m"].diffuse, DVec3::new(0.5, 1.0, 1.0));
     }
 
@@ -336,14 +247,8 @@ mod tests {
     fn a_library_may_have_spaces_in_its_name_or_be_several() {
         let source = Embedded(&[("s/a b.mtl", b""), ("s/c.mtl", b""), ("s/d.mtl", b"")]);
         assert_eq!(files(&source, "s/x.obj", "a b.mtl"), ["s/a b.mtl"]);
-        assert_eq!(
-            files(&source, "s/x.obj", "c.mtl d.mtl"),
-            ["s/c.mtl", "s/d.mtl"]
-        );
-        assert_eq!(
-            files(&source, "s/x.obj", "c.mtl e.mtl"),
-            ["s/c.mtl", "s/e.mtl"]
-        );
+        assert_eq!(files(&source, "s/x.obj", "c.mtl d.mtl"), ["s/c.mtl", "s/d.mtl"]);
+        assert_eq!(files(&source, "s/x.obj", "c.mtl e.mtl"), ["s/c.mtl", "s/e.mtl"]);
         assert_eq!(files(&source, "s/x.obj", "no such.mtl"), ["s/no such.mtl"]);
     }
 }

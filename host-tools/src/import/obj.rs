@@ -30,39 +30,23 @@ pub(super) struct Mesh {
 }
 
 /// Reads an OBJ file. Material libraries are named, not read.
-pub(super) fn read(
-    source: &dyn Source,
-    name: &str,
-    warnings: &mut Vec<Warning>,
-) -> Result<Mesh, ImportError> {
+pub(super) fn read(source: &dyn Source, name: &str, warnings: &mut Vec<Warning>) -> Result<Mesh, ImportError> {
     let file = source.describe(name);
     let lines = Lines::open(source, name).map_err(|error| ImportError::unreadable(&file, error))?;
-    let mut statements = Checked::new(ObjCheck {
-        lines,
-        faces: Faces::default(),
-    });
-    let options = tobj::LoadOptions {
-        triangulate: true,
-        ..Default::default()
-    };
+    let mut statements = Checked::new(ObjCheck { lines, faces: Faces::default() });
+    let options = tobj::LoadOptions { triangulate: true, ..Default::default() };
     let parsed = tobj::load_obj_buf(&mut statements, &options, |_| Ok(Default::default()));
     if let Some(failure) = statements.failure {
         return Err(failure);
     }
-    let parsed = parsed.map_err(|source| ImportError::Refused {
-        file: file.clone(),
-        source,
-    });
+    let parsed = parsed.map_err(|source| ImportError::Refused { file: file.clone(), source });
     let Some(parsed) = parsed?.0.pop() else {
         return Err(ImportError::NoFaces { file });
     };
     let faces = statements.check.faces;
     if let Some(&line) = faces.ignored.values().min() {
         let keywords: Vec<&String> = faces.ignored.keys().collect();
-        let message = format!(
-            "statements that are not rendered are ignored: {}",
-            list(&keywords)
-        );
+        let message = format!("statements that are not rendered are ignored: {}", list(&keywords));
         warnings.push(Warning::line(&file, line, message));
     }
     let (mesh, flattened) = assemble(&parsed.mesh, faces);
@@ -78,10 +62,7 @@ pub(super) fn read(
 fn assemble(parsed: &tobj::Mesh, faces: Faces) -> (Mesh, usize) {
     let mut normals = Normals::new(&parsed.normals);
     let mut flattened = 0;
-    let tags = faces
-        .runs
-        .iter()
-        .flat_map(|run| iter::repeat_n(run, run.triangles));
+    let tags = faces.runs.iter().flat_map(|run| iter::repeat_n(run, run.triangles));
     let corner_normals = parsed.normal_indices.as_chunks().0;
     let triangles = iter::zip(parsed.indices.as_chunks().0, tags)
         .enumerate()
@@ -89,27 +70,12 @@ fn assemble(parsed: &tobj::Mesh, faces: Faces) -> (Mesh, usize) {
             let given = corner_normals.get(i).filter(|_| run.smooth);
             let kept = given.and_then(|&corners| normals.keep(corners));
             flattened += usize::from(given.is_some() && kept.is_none());
-            Triangle {
-                vertices,
-                normals: kept,
-                material: run.material,
-            }
+            Triangle { vertices, normals: kept, material: run.material }
         })
         .collect();
-    let positions = parsed
-        .positions
-        .as_chunks()
-        .0
-        .iter()
-        .map(|&p| DVec3::from_array(p))
-        .collect();
-    let mesh = Mesh {
-        positions,
-        triangles,
-        normals: normals.kept,
-        materials: faces.materials,
-        libraries: faces.libraries,
-    };
+    let positions = parsed.positions.as_chunks().0.iter().map(|&p| DVec3::from_array(p)).collect();
+    let mesh =
+        Mesh { positions, triangles, normals: normals.kept, materials: faces.materials, libraries: faces.libraries };
     (mesh, flattened)
 }
 
@@ -131,11 +97,7 @@ impl Normals {
             (scale > 0.0).then(|| (n / scale).normalize())
         };
         let units: Vec<_> = components.as_chunks().0.iter().map(unit).collect();
-        Self {
-            places: vec![None; units.len()],
-            units,
-            kept: Vec::new(),
-        }
+        Self { places: vec![None; units.len()], units, kept: Vec::new() }
     }
 
     /// Keeps the normals of a triangle, unless one has no direction.
@@ -202,8 +164,7 @@ mod tests {
 
     #[test]
     fn weights_and_colours_of_vertices_are_ignored() {
-        let (mesh, warnings) =
-            mesh("v 0 0 0 2\nv 4 0 0 0.5 # c\nv 2 1 0 1 0 0\nv 3 0 1 1 1\nf 1 2 3\nf 1 2 4 # 9");
+        let (mesh, warnings) = mesh("v 0 0 0 2\nv 4 0 0 0.5 # c\nv 2 1 0 1 0 0\nv 3 0 1 1 1\nf 1 2 3\nf 1 2 4 # 9");
         assert_eq!(corners(&mesh), [[0.0, 4.0, 2.0], [0.0, 4.0, 3.0]]);
         assert!(warnings.is_empty());
     }
@@ -216,15 +177,7 @@ mod tests {
             f 1//2 2//2 3//2 4//-1\nf 1/1/3 2/1/3 4//3\n";
         let (mesh, warnings) = mesh(text);
         let normals: Vec<_> = mesh.triangles.iter().map(|t| t.normals).collect();
-        let expected = [
-            Some([0, 1, 0]),
-            None,
-            None,
-            None,
-            Some([0, 0, 0]),
-            None,
-            Some([1, 1, 1]),
-        ];
+        let expected = [Some([0, 1, 0]), None, None, None, Some([0, 0, 0]), None, Some([1, 1, 1])];
         assert_eq!(normals, expected);
         assert_eq!(mesh.normals.len(), 2, "only normals in use are kept");
         assert_eq!(mesh.normals[0], DVec3::Z);

@@ -34,9 +34,7 @@ impl ObjCheck<'_> {
         if self.lines.is_empty() {
             return Err(ImportError::Empty { file: file() });
         }
-        self.faces
-            .references()
-            .map_err(|(line, message)| self.error(line, message))?;
+        self.faces.references().map_err(|(line, message)| self.error(line, message))?;
         if self.faces.runs.is_empty() {
             return Err(ImportError::NoFaces { file: file() });
         }
@@ -118,25 +116,15 @@ impl Faces {
                 pass("f", &words, out);
             }
             "usemtl" => {
-                let named = Named {
-                    name: statement.name().into(),
-                    line: statement.line,
-                };
+                let named = Named { name: statement.name().into(), line: statement.line };
                 self.current = (named, None);
             }
             "mtllib" => {
                 let name = statement.name().into();
-                self.libraries.push(Named {
-                    name,
-                    line: statement.line,
-                });
+                self.libraries.push(Named { name, line: statement.line });
             }
             "o" | "g" | "s" => {}
-            other
-                if other
-                    .bytes()
-                    .all(|b| b.is_ascii_alphanumeric() || b == b'_') =>
-            {
+            other if other.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_') => {
                 if !self.ignored.contains_key(other) {
                     self.ignored.insert(other.into(), statement.line);
                 }
@@ -148,10 +136,7 @@ impl Faces {
 
     fn face(&mut self, corners: &[&str], line: u64) -> Result<(), String> {
         if corners.len() < 3 {
-            return Err(format!(
-                "a face of {} corners; it needs at least 3",
-                corners.len()
-            ));
+            return Err(format!("a face of {} corners; it needs at least 3", corners.len()));
         }
         let mut smooth = true;
         for corner in corners {
@@ -168,11 +153,7 @@ impl Faces {
             Some(run) if run.material == material && run.smooth == smooth => {
                 run.triangles += triangles;
             }
-            _ => self.runs.push(Run {
-                triangles,
-                material,
-                smooth,
-            }),
+            _ => self.runs.push(Run { triangles, material, smooth }),
         }
         Ok(())
     }
@@ -182,10 +163,7 @@ impl Faces {
         let mut smooth = false;
         for (list, word) in corner.split('/').enumerate() {
             let Some(name) = LISTS.get(list) else {
-                return Err(format!(
-                    "`{}` is not v, v/vt, v//vn or v/vt/vn",
-                    excerpt(corner)
-                ));
+                return Err(format!("`{}` is not v, v/vt, v//vn or v/vt/vn", excerpt(corner)));
             };
             if word.is_empty() && list > 0 {
                 continue;
@@ -199,9 +177,7 @@ impl Faces {
             let count = self.counts[list];
             match index {
                 0 => {
-                    return Err(format!(
-                        "{name} index 0; indices count from 1, or back from -1"
-                    ));
+                    return Err(format!("{name} index 0; indices count from 1, or back from -1"));
                 }
                 1.. => {
                     let furthest = &mut self.furthest[list];
@@ -210,9 +186,7 @@ impl Faces {
                     }
                 }
                 _ if index.unsigned_abs() > count => {
-                    return Err(format!(
-                        "{name} index {index}, but there are {count} before it"
-                    ));
+                    return Err(format!("{name} index {index}, but there are {count} before it"));
                 }
                 _ => {}
             }
@@ -237,10 +211,7 @@ impl Faces {
         for (list, name) in LISTS.iter().enumerate() {
             let ((index, line), count) = (self.furthest[list], self.counts[list]);
             if index > count {
-                return Err((
-                    line,
-                    format!("{name} index {index}, but the file has {count}"),
-                ));
+                return Err((line, format!("{name} index {index}, but the file has {count}")));
             }
         }
         Ok(())
@@ -250,10 +221,7 @@ impl Faces {
 /// Checks that there are enough words, and that all are finite numbers of at most `largest`.
 fn numbers(words: &[&str], least: usize, largest: f64) -> Result<(), String> {
     if words.len() < least {
-        return Err(format!(
-            "too few numbers: {} of at least {least}",
-            words.len()
-        ));
+        return Err(format!("too few numbers: {} of at least {least}", words.len()));
     }
     for word in words {
         if number(word)?.abs() > largest {
@@ -284,10 +252,7 @@ mod tests {
         let files = [("x", text.as_bytes())];
         let source = Embedded(&files);
         let lines = Lines::open(&source, "x").unwrap();
-        let mut check = ObjCheck {
-            lines,
-            faces: Faces::default(),
-        };
+        let mut check = ObjCheck { lines, faces: Faces::default() };
         loop {
             let mut out = String::new();
             match check.next(&mut out) {
@@ -314,44 +279,20 @@ mod tests {
             ("v 1,5 2,5 3,5", "`1,5` is not a number"),
             ("f", "a face of 0 corners; it needs at least 3"),
             ("f 1 2", "a face of 2 corners; it needs at least 3"),
-            (
-                "f 0 1 2",
-                "vertex index 0; indices count from 1, or back from -1",
-            ),
-            (
-                "f 1//0 2//1 3//1",
-                "normal index 0; indices count from 1, or back from -1",
-            ),
+            ("f 0 1 2", "vertex index 0; indices count from 1, or back from -1"),
+            ("f 1//0 2//1 3//1", "normal index 0; indices count from 1, or back from -1"),
             ("f 1 2 4", "vertex index 4, but the file has 3"),
             ("f 1//1 2//1 3//2", "normal index 2, but the file has 1"),
-            (
-                "f 1/1 2/1 3/1",
-                "texture coordinate index 1, but the file has 0",
-            ),
+            ("f 1/1 2/1 3/1", "texture coordinate index 1, but the file has 0"),
             ("f 1 2 -4", "vertex index -4, but there are 3 before it"),
-            (
-                "f 1 2 -9223372036854775808",
-                "vertex index -9223372036854775808, but there are 3 before it",
-            ),
-            (
-                "f 1 2 9223372036854775807",
-                "vertex index 9223372036854775807, but the file has 3",
-            ),
-            (
-                "f 1 2 9223372036854775808",
-                "vertex index `9223372036854775808` is beyond 64 bits",
-            ),
-            (
-                "f 1 2 -9223372036854775809",
-                "vertex index `-9223372036854775809` is beyond 64 bits",
-            ),
+            ("f 1 2 -9223372036854775808", "vertex index -9223372036854775808, but there are 3 before it"),
+            ("f 1 2 9223372036854775807", "vertex index 9223372036854775807, but the file has 3"),
+            ("f 1 2 9223372036854775808", "vertex index `9223372036854775808` is beyond 64 bits"),
+            ("f 1 2 -9223372036854775809", "vertex index `-9223372036854775809` is beyond 64 bits"),
             ("f 1 2 3.0", "vertex index `3.0` is not an integer"),
             ("f 1 2 three", "vertex index `three` is not an integer"),
             ("f /1 2 3", "vertex index `` is not an integer"),
-            (
-                "f 1/2/3/4 2 3",
-                "`1/2/3/4` is not v, v/vt, v//vn or v/vt/vn",
-            ),
+            ("f 1/2/3/4 2 3", "`1/2/3/4` is not v, v/vt, v//vn or v/vt/vn"),
             ("<!DOCTYPE html>", "`<!DOCTYPE` is not an OBJ statement"),
             ("\u{1}\u{2}", "`\\u{1}\\u{2}` is not an OBJ statement"),
         ];

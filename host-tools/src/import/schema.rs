@@ -127,10 +127,7 @@ pub(super) enum SpecularToml {
 
 /// `material.NAME.checker`.
 #[derive(Debug, Deserialize)]
-#[serde(
-    deny_unknown_fields,
-    expecting = "a table such as { size = 2.0, other = [0, 0, 0] }"
-)]
+#[serde(deny_unknown_fields, expecting = "a table such as { size = 2.0, other = [0, 0, 0] }")]
 pub(super) struct CheckerToml {
     pub size: Number,
     pub other: Spanned<Vector>,

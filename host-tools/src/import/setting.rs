@@ -17,16 +17,9 @@ impl Document {
     /// The lights; where there are none, a white one at the camera.
     pub(super) fn lights(&self, camera: &Camera) -> Result<Vec<Light>, ImportError> {
         if self.scene.light.is_empty() {
-            return Ok(vec![Light {
-                kind: LightKind::Point(camera.position),
-                radiance: DVec3::ONE,
-            }]);
+            return Ok(vec![Light { kind: LightKind::Point(camera.position), radiance: DVec3::ONE }]);
         }
-        self.scene
-            .light
-            .iter()
-            .map(|light| self.light(light))
-            .collect()
+        self.scene.light.iter().map(|light| self.light(light)).collect()
     }
 
     fn light(&self, table: &Spanned<LightToml>) -> Result<Light, ImportError> {
@@ -50,27 +43,20 @@ impl Document {
                 return Err(self.error(table.span(), message));
             }
             (LightKindToml::Directional, _, _) => {
-                let message =
-                    "a directional light has a direction, such as [0, -1, 0], and no position";
+                let message = "a directional light has a direction, such as [0, -1, 0], and no position";
                 return Err(self.error(table.span(), message));
             }
         };
         let colour = self.colour("colour", LARGEST, light.colour.as_ref(), DVec3::ONE)?;
         let intensity = match &light.intensity {
             Some(intensity) if !(0.0..=LARGEST).contains(&intensity.get_ref().0) => {
-                let message = format!(
-                    "intensity of {}; it must be from 0 to {LARGEST:e}",
-                    intensity.get_ref().0
-                );
+                let message = format!("intensity of {}; it must be from 0 to {LARGEST:e}", intensity.get_ref().0);
                 return Err(self.error(intensity.span(), message));
             }
             Some(intensity) => intensity.get_ref().0,
             None => 1.0,
         };
-        Ok(Light {
-            kind,
-            radiance: intensity * colour,
-        })
+        Ok(Light { kind, radiance: intensity * colour })
     }
 
     /// What a ray that hits nothing sees.
@@ -83,10 +69,7 @@ impl Document {
     }
 
     /// Picture settings.
-    pub(super) fn render(
-        &self,
-        warnings: &mut Vec<Warning>,
-    ) -> Result<RenderSettings, ImportError> {
+    pub(super) fn render(&self, warnings: &mut Vec<Warning>) -> Result<RenderSettings, ImportError> {
         let render = &self.scene.render;
         let size = match &render.size {
             Some(size) => self.size(size)?,
@@ -107,11 +90,7 @@ impl Document {
             TransferToml::Linear => Transfer::Linear,
         };
         let ambient = self.colour("ambient", LARGEST, render.ambient.as_ref(), DVec3::ZERO)?;
-        Ok(RenderSettings {
-            size,
-            ambient,
-            transfer,
-        })
+        Ok(RenderSettings { size, ambient, transfer })
     }
 
     fn size(&self, size: &Spanned<Vec<Number>>) -> Result<[u32; 2], ImportError> {
@@ -121,8 +100,7 @@ impl Document {
         match sides[..] {
             [width, height] if size_is_allowed(width, height) => Ok([width, height]),
             _ => {
-                let message =
-                    format!("size must be a width and a height in whole pixels, such as [640, 480]; {SIZES}");
+                let message = format!("size must be a width and a height in whole pixels, such as [640, 480]; {SIZES}");
                 Err(self.error(size.span(), message))
             }
         }
@@ -139,18 +117,9 @@ mod tests {
         let direction = "a directional light has a direction, such as [0, -1, 0], and no position";
         refused(&[
             ("[[light]]", &format!("2: {point}")),
-            (
-                "[[light]]\nposition = [0, 0, 0]\n[[light]]",
-                &format!("4: {point}"),
-            ),
-            (
-                "[[light]]\nposition = [0, 0, 0]\ndirection = [0, 1, 0]",
-                &format!("2: {point}"),
-            ),
-            (
-                "[[light]]\nkind = 'directional'\nposition = [0, 1, 0]",
-                &format!("2: {direction}"),
-            ),
+            ("[[light]]\nposition = [0, 0, 0]\n[[light]]", &format!("4: {point}")),
+            ("[[light]]\nposition = [0, 0, 0]\ndirection = [0, 1, 0]", &format!("2: {point}")),
+            ("[[light]]\nkind = 'directional'\nposition = [0, 1, 0]", &format!("2: {direction}")),
             (
                 "[[light]]\nkind = 'directional'\ndirection = [0, 0, 0]",
                 "4: direction [0, 0, 0] is not a direction; give one of length 1 or so",
@@ -159,14 +128,8 @@ mod tests {
                 "[[light]]\nposition = [0, 0, 0]\nfalloff = 'inverse-square'",
                 "4: inverse-square falloff is not supported yet; use \"none\"",
             ),
-            (
-                "[[light]]\nposition = [0, 0, 0]\nreach = 3",
-                "4: reach goes with an inverse-square falloff",
-            ),
-            (
-                "[[light]]\nposition = [0, 0, 0]\nintensity = -1",
-                "4: intensity of -1; it must be from 0 to 1e30",
-            ),
+            ("[[light]]\nposition = [0, 0, 0]\nreach = 3", "4: reach goes with an inverse-square falloff"),
+            ("[[light]]\nposition = [0, 0, 0]\nintensity = -1", "4: intensity of -1; it must be from 0 to 1e30"),
             (
                 "[[light]]\nposition = [0, 0, 0]\ncolour = [1, 1, -1]",
                 "4: colour [1, 1, -1] is out of range; each channel is from 0 to 1e30",
@@ -185,22 +148,10 @@ mod tests {
             ("[render]\nsize = [16385, 1]", size),
             ("[render]\nsize = [640]", size),
             ("[render]\nsize = [8192, 8193]", size),
-            (
-                "[render]\nsamples = 0",
-                "3: samples of 0; it must be a whole number from 1",
-            ),
-            (
-                "[render]\nmax_depth = -1",
-                "3: max_depth of -1; it must be a whole number from 0",
-            ),
-            (
-                "[render]\nambient = [-1, 0, 0]",
-                "3: ambient [-1, 0, 0] is out of range; each channel is from 0 to 1e30",
-            ),
-            (
-                "[background]\nsky = [[0, 0, 0], [1, 1, 1]]",
-                "3: sky is not supported yet; give a colour",
-            ),
+            ("[render]\nsamples = 0", "3: samples of 0; it must be a whole number from 1"),
+            ("[render]\nmax_depth = -1", "3: max_depth of -1; it must be a whole number from 0"),
+            ("[render]\nambient = [-1, 0, 0]", "3: ambient [-1, 0, 0] is out of range; each channel is from 0 to 1e30"),
+            ("[background]\nsky = [[0, 0, 0], [1, 1, 1]]", "3: sky is not supported yet; give a colour"),
             (
                 "[background]\ncolour = [0, -1, 0]",
                 "3: background [0, -1, 0] is out of range; each channel is from 0 to 1e30",

@@ -58,10 +58,7 @@ pub struct Embedded<'a>(pub &'a [(&'a str, &'a [u8])]);
 impl Source for Embedded<'_> {
     fn open(&self, name: &str) -> io::Result<Box<dyn BufRead + '_>> {
         // As paths, so that either separator will do where the system has two.
-        let file = self
-            .0
-            .iter()
-            .find(|(known, _)| Path::new(known) == Path::new(name));
+        let file = self.0.iter().find(|(known, _)| Path::new(known) == Path::new(name));
         match file {
             Some((_, contents)) => Ok(Box::new(*contents)),
             None => Err(io::ErrorKind::NotFound.into()),
@@ -82,10 +79,7 @@ mod tests {
         let files = Embedded(&[("a.obj", b"one"), ("sub/b.mtl", b"two")]);
         assert_eq!(files.read("a.obj").unwrap(), b"one");
         assert_eq!(files.read("sub/b.mtl").unwrap(), b"two");
-        assert_eq!(
-            files.read("b.mtl").unwrap_err().kind(),
-            io::ErrorKind::NotFound
-        );
+        assert_eq!(files.read("b.mtl").unwrap_err().kind(), io::ErrorKind::NotFound);
         assert_eq!(files.describe("a.obj"), "built-in a.obj");
     }
 
@@ -96,14 +90,8 @@ mod tests {
         std::fs::write(folder.path().join("a.obj"), "text").unwrap();
         let files = Folder(folder.path().into());
         assert_eq!(files.read("a.obj").unwrap(), b"text");
-        assert_eq!(
-            files.read("sub").unwrap_err().kind(),
-            io::ErrorKind::IsADirectory
-        );
-        assert_eq!(
-            files.read("b.obj").unwrap_err().kind(),
-            io::ErrorKind::NotFound
-        );
+        assert_eq!(files.read("sub").unwrap_err().kind(), io::ErrorKind::IsADirectory);
+        assert_eq!(files.read("b.obj").unwrap_err().kind(), io::ErrorKind::NotFound);
         assert!(files.describe("a.obj").ends_with("a.obj"));
     }
 }

@@ -25,7 +25,9 @@ pub(super) fn camera<K: Kernel>(model: &Model, grid: &Grid) -> CameraHeader {
     let half_height = libm::tan(camera.fov_y / 2.0);
     let pixel = 2.0 * half_height / height;
     let first = forward + right * (pixel * (1.0 - width) / 2.0) - up * (pixel * (1.0 - height) / 2.0);
-    let (step_right, step_down) = (right * pixel, -up * pixel);
+    // In a picture of one column (or row) no step is taken, and a wide view's would not fit.
+    let step = |direction: DVec3, pixels: f64| if pixels > 1.0 { direction * pixel } else { DVec3::ZERO };
+    let (step_right, step_down) = (step(right, width), step(-up, height));
 
     // The largest component of any direction; it is at a corner, since directions are linear in the pixel.
     let (last_x, last_y) = (width - 1.0, height - 1.0);

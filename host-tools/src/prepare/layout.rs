@@ -117,10 +117,7 @@ pub(super) fn write<K: Kernel>(
             lights: lights.len() as u32,
         },
         file_triangles: model.triangles.len() as u32,
-        source: SourceGrid {
-            origin_bits: grid.origin.to_array().map(f64::to_bits),
-            scale_bits: grid.scale.to_bits(),
-        },
+        source: SourceGrid { origin_bits: grid.origin.to_array().map(f64::to_bits), scale_bits: grid.scale.to_bits() },
     };
     let encoded = postcard::to_stdvec(&header).unwrap_or_default();
     let integer = |wide: bool| if wide { 4 } else { 2 };

@@ -25,25 +25,16 @@ pub(super) struct Bounds {
 
 impl Bounds {
     /// The box of nothing: neutral in [`Bounds::union`].
-    pub(super) const EMPTY: Self = Self {
-        low: DVec3::INFINITY,
-        high: DVec3::NEG_INFINITY,
-    };
+    pub(super) const EMPTY: Self = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
 
     /// The smallest box around `points`.
     pub(super) fn around(points: impl IntoIterator<Item = DVec3>) -> Self {
-        points.into_iter().fold(Self::EMPTY, |bounds, p| Self {
-            low: bounds.low.min(p),
-            high: bounds.high.max(p),
-        })
+        points.into_iter().fold(Self::EMPTY, |bounds, p| Self { low: bounds.low.min(p), high: bounds.high.max(p) })
     }
 
     /// The smallest box around both.
     pub(super) fn union(self, other: Self) -> Self {
-        Self {
-            low: self.low.min(other.low),
-            high: self.high.max(other.high),
-        }
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
     /// Half the surface; 0 when empty.
@@ -91,25 +82,13 @@ mod tests {
     #[test]
     fn enters_misses_and_stops_at_the_limit() {
         let inf = f64::INFINITY;
-        assert_eq!(
-            entry(unit(), [-2.0, 0.5, 0.5], [3.0, 0.0, 0.0], inf),
-            Some(2.0)
-        );
-        assert_eq!(
-            entry(unit(), [-2.0, 0.5, 0.5], [3.0, 0.0, 0.0], 2.0),
-            Some(2.0)
-        );
+        assert_eq!(entry(unit(), [-2.0, 0.5, 0.5], [3.0, 0.0, 0.0], inf), Some(2.0));
+        assert_eq!(entry(unit(), [-2.0, 0.5, 0.5], [3.0, 0.0, 0.0], 2.0), Some(2.0));
         assert_eq!(entry(unit(), [-2.0, 0.5, 0.5], [3.0, 0.0, 0.0], 1.9), None);
         assert_eq!(entry(unit(), [-2.0, 0.5, 0.5], [-1.0, 0.0, 0.0], inf), None);
-        assert_eq!(
-            entry(unit(), [0.5, 0.5, 0.5], [1.0, 1.0, 1.0], inf),
-            Some(0.0)
-        );
+        assert_eq!(entry(unit(), [0.5, 0.5, 0.5], [1.0, 1.0, 1.0], inf), Some(0.0));
         assert_eq!(entry(unit(), [-2.0, 1.5, 0.5], [1.0, 0.0, 0.0], inf), None);
-        assert_eq!(
-            entry(Bounds::EMPTY, [0.5, 0.5, 0.5], [1.0, 1.0, 1.0], inf),
-            None
-        );
+        assert_eq!(entry(Bounds::EMPTY, [0.5, 0.5, 0.5], [1.0, 1.0, 1.0], inf), None);
     }
 
     #[test]

@@ -58,22 +58,14 @@ impl Item {
 impl Bvh {
     /// The tree over `triangles`, at most 2^32 - 1 of them, duplicates welcome.
     pub(super) fn build(triangles: impl IntoIterator<Item = Triangle>) -> Self {
-        let mut items: Vec<Item> = triangles
-            .into_iter()
-            .map(|triangle| Item {
-                triangle,
-                bounds: Bounds::around(triangle.corners),
-            })
-            .collect();
+        let mut items: Vec<Item> =
+            triangles.into_iter().map(|triangle| Item { triangle, bounds: Bounds::around(triangle.corners) }).collect();
         let mut nodes = Vec::new();
         if !items.is_empty() {
             nodes.push(leaf(&items, 0..items.len()));
             subdivide(&mut nodes, 0, &mut items, 0);
         }
-        Self {
-            nodes,
-            triangles: items.iter().map(|item| item.triangle).collect(),
-        }
+        Self { nodes, triangles: items.iter().map(|item| item.triangle).collect() }
     }
 
     /// The box around everything.
@@ -109,11 +101,7 @@ impl Bvh {
                 let (left, right) = (node.first, node.first + 1);
                 let near = match (entry(left, limit), entry(right, limit)) {
                     (Some(l), Some(r)) => {
-                        let (near, far) = if r < l {
-                            (right, (left, l))
-                        } else {
-                            (left, (right, r))
-                        };
+                        let (near, far) = if r < l { (right, (left, l)) } else { (left, (right, r)) };
                         stack[waiting] = far;
                         waiting += 1;
                         Some(near)
@@ -145,9 +133,7 @@ impl Bvh {
 /// A leaf over `range` of `items`.
 fn leaf(items: &[Item], range: Range<usize>) -> Node {
     Node {
-        bounds: items[range.clone()]
-            .iter()
-            .fold(Bounds::EMPTY, |bounds, item| bounds.union(item.bounds)),
+        bounds: items[range.clone()].iter().fold(Bounds::EMPTY, |bounds, item| bounds.union(item.bounds)),
         first: range.start as u32,
         count: range.len() as u32,
     }
@@ -161,11 +147,7 @@ fn subdivide(nodes: &mut Vec<Node>, index: usize, items: &mut [Item], depth: usi
         return;
     }
     let part = &mut items[first..end];
-    let split = if depth < HEURISTIC_DEPTH {
-        binned(part)
-    } else {
-        None
-    };
+    let split = if depth < HEURISTIC_DEPTH { binned(part) } else { None };
     let middle = first + split.unwrap_or_else(|| median(part));
     let left = nodes.len();
     nodes.push(leaf(items, first..middle));
@@ -258,10 +240,7 @@ mod tests {
         (0..count)
             .map(|prim| {
                 let x = place(prim);
-                Triangle {
-                    corners: [[x, 0.0, 0.0], [x, 1.0, 0.0], [x, 0.0, 1.0]].map(DVec3::from),
-                    prim,
-                }
+                Triangle { corners: [[x, 0.0, 0.0], [x, 1.0, 0.0], [x, 0.0, 1.0]].map(DVec3::from), prim }
             })
             .collect()
     }
@@ -279,11 +258,7 @@ mod tests {
             let mut bvh = Bvh::build(triangles.clone());
             assert_eq!(faults(&bvh, &triangles), 0);
             bvh.triangles[0].corners[0].x = -1e300;
-            assert_ne!(
-                faults(&bvh, &triangles),
-                0,
-                "the check must see a damaged tree"
-            );
+            assert_ne!(faults(&bvh, &triangles), 0, "the check must see a damaged tree");
         }
     }
 
@@ -303,11 +278,7 @@ mod tests {
             let mut leaves = 0;
             bvh.traverse(&ray, limit, |_| {
                 leaves += 1;
-                if leaves == break_after {
-                    ControlFlow::Break(())
-                } else {
-                    ControlFlow::Continue(limit)
-                }
+                if leaves == break_after { ControlFlow::Break(()) } else { ControlFlow::Continue(limit) }
             });
             leaves
         };

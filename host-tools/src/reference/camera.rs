@@ -34,10 +34,7 @@ impl View {
         let pixel = 2.0 * self.half_height / height;
         let right = (x - width / 2.0) * pixel;
         let up = (height / 2.0 - y) * pixel;
-        (
-            self.position,
-            self.forward + self.right * right + self.up * up,
-        )
+        (self.position, self.forward + self.right * right + self.up * up)
     }
 }
 
@@ -55,10 +52,7 @@ mod tests {
         });
         let close = |(origin, direction): (DVec3, DVec3), expected: [f64; 3]| {
             assert_eq!(origin, DVec3::new(1.0, 2.0, 3.0));
-            assert!(
-                (direction - DVec3::from(expected)).length() < 1e-15,
-                "{direction}"
-            );
+            assert!((direction - DVec3::from(expected)).length() < 1e-15, "{direction}");
         };
         close(view.ray([200, 100], 100.0, 50.0), [0.0, 0.0, -1.0]);
         close(view.ray([200, 100], 0.0, 0.0), [-2.0, 1.0, -1.0]);

@@ -71,12 +71,7 @@ pub struct Hit {
 
 impl Hit {
     fn new(ray: &Ray, crossing: Crossing, prim: u32) -> Self {
-        Self {
-            t: crossing.depth / ray.scale,
-            prim,
-            u: crossing.u,
-            v: crossing.v,
-        }
+        Self { t: crossing.depth / ray.scale, prim, u: crossing.u, v: crossing.v }
     }
 }
 
@@ -113,12 +108,7 @@ impl<'m> Reference<'m> {
         let bvh = Bvh::build(triangles.filter(Triangle::has_area));
         let bounds = bvh.bounds();
         let largest = bounds.low.abs().max(bounds.high.abs()).max_element();
-        Self {
-            model,
-            bvh,
-            view: View::new(&model.camera),
-            contact: libm::ldexp(largest, -40),
-        }
+        Self { model, bvh, view: View::new(&model.camera), contact: libm::ldexp(largest, -40) }
     }
 
     /// The nearest hit along `direction`, which may have any length but zero; `None` if there is none.
@@ -147,10 +137,7 @@ impl<'m> Reference<'m> {
             ControlFlow::Continue(limit)
         });
         found.sort_by(|(a, i), (b, j)| a.depth.total_cmp(&b.depth).then(i.cmp(j)));
-        found
-            .into_iter()
-            .map(|(crossing, prim)| Hit::new(&ray, crossing, prim))
-            .collect()
+        found.into_iter().map(|(crossing, prim)| Hit::new(&ray, crossing, prim)).collect()
     }
 
     /// Origin and direction, not of unit length, of the camera ray through `(x, y)` in pixels of a
@@ -181,11 +168,7 @@ impl<'m> Reference<'m> {
 
     /// The picture of `size` (width, height) as RGB bytes, and the nearest hits, both row by row from
     /// the top. `progress` is called by any thread with the number of pixels it has just finished.
-    pub fn render(
-        &self,
-        size: [u32; 2],
-        progress: &(dyn Fn(u64) + Sync),
-    ) -> (Vec<[u8; 3]>, Vec<Option<Hit>>) {
+    pub fn render(&self, size: [u32; 2], progress: &(dyn Fn(u64) + Sync)) -> (Vec<[u8; 3]>, Vec<Option<Hit>>) {
         let [width, height] = size;
         (0..height)
             .into_par_iter()
@@ -193,10 +176,7 @@ impl<'m> Reference<'m> {
                 let row: Vec<_> = (0..width)
                     .map(|x| {
                         let sample = self.pixel(size, x, y);
-                        (
-                            encode(sample.colour, self.model.render.transfer),
-                            sample.hit,
-                        )
+                        (encode(sample.colour, self.model.render.transfer), sample.hit)
                     })
                     .collect();
                 progress(u64::from(width));
@@ -225,10 +205,5 @@ impl<'m> Reference<'m> {
 
 /// Triangle `prim` of `model`, its corners looked up.
 fn lookup(model: &Model, prim: u32) -> Triangle {
-    Triangle {
-        corners: model.triangles[prim as usize]
-            .vertices
-            .map(|v| model.positions[v as usize]),
-        prim,
-    }
+    Triangle { corners: model.triangles[prim as usize].vertices.map(|v| model.positions[v as usize]), prim }
 }

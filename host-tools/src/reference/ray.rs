@@ -33,13 +33,7 @@ impl Ray {
         };
         let scale = size[axes[2]];
         let step = direction / scale;
-        Self {
-            origin,
-            step,
-            inverse: step.recip(),
-            axes,
-            scale,
-        }
+        Self { origin, step, inverse: step.recip(), axes, scale }
     }
 }
 

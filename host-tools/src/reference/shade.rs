@@ -21,20 +21,12 @@ impl Reference<'_> {
         };
         let point = blend(&model.positions, triangle.vertices);
         let front = lookup(model, hit.prim).cross().normalize();
-        let geometric_normal = if front.dot(direction) > 0.0 {
-            -front
-        } else {
-            front
-        };
+        let geometric_normal = if front.dot(direction) > 0.0 { -front } else { front };
         let smooth = triangle
             .normals
             .and_then(|normals| blend(&model.normals, normals).try_normalize())
             .unwrap_or(geometric_normal);
-        let normal = if smooth.dot(geometric_normal) < 0.0 {
-            -smooth
-        } else {
-            smooth
-        };
+        let normal = if smooth.dot(geometric_normal) < 0.0 { -smooth } else { smooth };
 
         let mut irradiance = model.render.ambient;
         let mut lights = 0;
@@ -65,27 +57,17 @@ impl Reference<'_> {
     /// Whether a triangle other than `start`, on which `ray` starts, lies between there and `end`, a
     /// point light; without one, anywhere along `ray`.
     fn blocked(&self, ray: &Ray, start: u32, end: Option<DVec3>) -> bool {
-        let limit = if end.is_some() {
-            ray.scale
-        } else {
-            f64::INFINITY
-        };
+        let limit = if end.is_some() { ray.scale } else { f64::INFINITY };
         let blocks = |triangle: &Triangle| {
             triangle.prim != start
-                && triangle
-                    .intersect(ray)
-                    .is_some_and(|crossing| crossing.depth < limit)
+                && triangle.intersect(ray).is_some_and(|crossing| crossing.depth < limit)
                 && !self.in_plane(triangle, ray.origin)
                 && !end.is_some_and(|light| self.in_plane(triangle, light))
         };
         let mut blocked = false;
         self.bvh.traverse(ray, limit, |triangles| {
             blocked = triangles.iter().any(blocks);
-            if blocked {
-                ControlFlow::Break(())
-            } else {
-                ControlFlow::Continue(limit)
-            }
+            if blocked { ControlFlow::Break(()) } else { ControlFlow::Continue(limit) }
         });
         blocked
     }

@@ -9,44 +9,27 @@ fn soup(corners: &[[DVec3; 3]]) -> Model {
         positions: corners.iter().flatten().copied().collect(),
         normals: Vec::new(),
         triangles: (0..corners.len() as u32)
-            .map(|i| crate::model::Triangle {
-                vertices: [3 * i, 3 * i + 1, 3 * i + 2],
-                normals: None,
-                material: 0,
-            })
+            .map(|i| crate::model::Triangle { vertices: [3 * i, 3 * i + 1, 3 * i + 2], normals: None, material: 0 })
             .collect(),
         materials: Vec::new(),
         lights: Vec::new(),
-        camera: Camera {
-            position: DVec3::ZERO,
-            look_at: DVec3::X,
-            up: DVec3::Z,
-            fov_y: 1.0,
-        },
+        camera: Camera { position: DVec3::ZERO, look_at: DVec3::X, up: DVec3::Z, fov_y: 1.0 },
         background: DVec3::ZERO,
-        render: RenderSettings {
-            size: [1, 1],
-            ambient: DVec3::ZERO,
-            transfer: Transfer::Linear,
-        },
+        render: RenderSettings { size: [1, 1], ambient: DVec3::ZERO, transfer: Transfer::Linear },
     }
 }
 
 /// Multiples of 1/8 in [-1, 1], so that coincidences abound.
 fn coarse(state: &mut u64) -> DVec3 {
     DVec3::from_array(std::array::from_fn(|_| {
-        *state = state
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
+        *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         ((*state >> 33) % 17) as f64 / 8.0 - 1.0
     }))
 }
 
 /// Rays for which the tree and a loop over all triangles differ in any bit.
 fn differences(tree: &Reference, all: &Model, rays: &[(DVec3, DVec3)]) -> usize {
-    let triangles: Vec<_> = (0..all.triangles.len() as u32)
-        .map(|i| lookup(all, i))
-        .collect();
+    let triangles: Vec<_> = (0..all.triangles.len() as u32).map(|i| lookup(all, i)).collect();
     let loops = |ray: &Ray| {
         let hits = triangles.iter().filter(|triangle| triangle.has_area());
         hits.filter_map(|triangle| Some((triangle.intersect(ray)?, triangle.prim)))
@@ -63,9 +46,7 @@ fn differences(tree: &Reference, all: &Model, rays: &[(DVec3, DVec3)]) -> usize 
 fn the_tree_loses_nothing_that_a_loop_finds() {
     let mut state = 1;
     for _ in 0..20 {
-        let mut corners: Vec<_> = (0..200)
-            .map(|_| std::array::from_fn(|_| coarse(&mut state)))
-            .collect();
+        let mut corners: Vec<_> = (0..200).map(|_| std::array::from_fn(|_| coarse(&mut state))).collect();
         // An axis-aligned wall, a duplicate, and triangles that are lines and points.
         corners.push([[-1.0, -1.0, 0.5], [1.0, -1.0, 0.5], [1.0, 1.0, 0.5]].map(DVec3::from));
         corners.push(corners[0]);

@@ -74,11 +74,7 @@ impl Triangle {
         // A convex combination of the corners' depths: its error never leaves the triangle, however
         // thin that is.
         let depth = (a * az + b * bz + c * cz) / area;
-        (depth > 0.0).then_some(Crossing {
-            depth,
-            u: b / area,
-            v: c / area,
-        })
+        (depth > 0.0).then_some(Crossing { depth, u: b / area, v: c / area })
     }
 }
 
@@ -90,11 +86,7 @@ impl Triangle {
 fn determinant(px: f64, py: f64, qx: f64, qy: f64) -> f64 {
     let left = px * qy;
     let right = py * qx;
-    if left == right {
-        libm::fma(px, qy, -left) - libm::fma(py, qx, -right)
-    } else {
-        left - right
-    }
+    if left == right { libm::fma(px, qy, -left) - libm::fma(py, qx, -right) } else { left - right }
 }
 
 #[cfg(test)]
@@ -102,16 +94,11 @@ mod tests {
     use super::*;
 
     fn triangle(corners: [[f64; 3]; 3]) -> Triangle {
-        Triangle {
-            corners: corners.map(DVec3::from),
-            prim: 0,
-        }
+        Triangle { corners: corners.map(DVec3::from), prim: 0 }
     }
 
     fn hit(triangle: &Triangle, origin: [f64; 3], direction: [f64; 3]) -> Option<[f64; 3]> {
-        triangle
-            .intersect(&Ray::new(origin.into(), direction.into()))
-            .map(|c| [c.depth, c.u, c.v])
+        triangle.intersect(&Ray::new(origin.into(), direction.into())).map(|c| [c.depth, c.u, c.v])
     }
 
     const FLOOR: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
@@ -119,14 +106,8 @@ mod tests {
     #[test]
     fn a_known_point_from_both_sides() {
         let floor = triangle(FLOOR);
-        assert_eq!(
-            hit(&floor, [1.0, 2.0, 8.0], [0.0, 0.0, -2.0]),
-            Some([8.0, 0.25, 0.5])
-        );
-        assert_eq!(
-            hit(&floor, [1.0, 2.0, -8.0], [0.0, 0.0, 0.5]),
-            Some([8.0, 0.25, 0.5])
-        );
+        assert_eq!(hit(&floor, [1.0, 2.0, 8.0], [0.0, 0.0, -2.0]), Some([8.0, 0.25, 0.5]));
+        assert_eq!(hit(&floor, [1.0, 2.0, -8.0], [0.0, 0.0, 0.5]), Some([8.0, 0.25, 0.5]));
         assert_eq!(hit(&floor, [1.0, 2.0, 8.0], [0.0, 0.0, 1.0]), None);
         assert_eq!(hit(&floor, [3.0, 2.0, 8.0], [0.0, 0.0, -1.0]), None);
     }

@@ -3,37 +3,19 @@ use crate::meshes;
 
 /// The bounds of a 29-bit and a 14-bit kernel, and the widest that the oracle takes.
 const BOUNDS: [Bounds; 3] = [
-    Bounds {
-        grid_bits: 29,
-        origin: [0, (1 << 29) - 1],
-        direction: (1 << 31) - 1,
-    },
-    Bounds {
-        grid_bits: 14,
-        origin: [-(1 << 13), (1 << 14) + (1 << 13)],
-        direction: (1 << 13) - 1,
-    },
-    Bounds {
-        grid_bits: 30,
-        origin: [-(1 << 30), 1 << 30],
-        direction: 1 << 31,
-    },
+    Bounds { grid_bits: 29, origin: [0, (1 << 29) - 1], direction: (1 << 31) - 1 },
+    Bounds { grid_bits: 14, origin: [-(1 << 13), (1 << 14) + (1 << 13)], direction: (1 << 13) - 1 },
+    Bounds { grid_bits: 30, origin: [-(1 << 30), 1 << 30], direction: 1 << 31 },
 ];
 
 fn cross(a: [i64; 3], b: [i64; 3]) -> [i128; 3] {
     let [a, b] = [a, b].map(|v| v.map(i128::from));
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// Whether the ray passes through a vertex exactly, or starts on one.
 fn meets_vertex(ray: &Ray, mesh: &[Triangle]) -> bool {
-    mesh.iter()
-        .flatten()
-        .any(|&v| cross(difference(v, ray.origin), ray.direction) == [0; 3])
+    mesh.iter().flatten().any(|&v| cross(difference(v, ray.origin), ray.direction) == [0; 3])
 }
 
 /// Whether the line of the ray meets the line of an edge: the volume that they span is zero.
@@ -41,10 +23,7 @@ fn meets_edge(ray: &Ray, mesh: &[Triangle]) -> bool {
     mesh.iter().any(|&[a, b, c]| {
         [(a, b), (b, c), (c, a)].iter().any(|&(a, b)| {
             let side = cross(difference(a, ray.origin), difference(b, ray.origin));
-            (0..3)
-                .map(|i| side[i] * i128::from(ray.direction[i]))
-                .sum::<i128>()
-                == 0
+            (0..3).map(|i| side[i] * i128::from(ray.direction[i])).sum::<i128>() == 0
         })
     })
 }
@@ -64,9 +43,7 @@ fn share(kind: Kind, property: fn(&Ray, &[Triangle]) -> bool) -> [usize; 3] {
     BOUNDS.map(|bounds| {
         let mesh = meshes::soup(bounds.grid_bits, 20, 9);
         let mut rays = Rays::new(&mesh, bounds, 10);
-        (0..1000)
-            .filter(|_| property(&rays.ray(kind), &mesh))
-            .count()
+        (0..1000).filter(|_| property(&rays.ray(kind), &mesh)).count()
     })
 }
 
@@ -78,10 +55,7 @@ fn every_ray_is_within_the_bounds() {
                 let [low, high] = bounds.origin;
                 let inside = ray.origin.iter().all(|c| (low..=high).contains(c));
                 let short = ray.direction.iter().all(|c| c.abs() <= bounds.direction);
-                assert!(
-                    inside && short && ray.direction != [0; 3],
-                    "{name} {kind:?} {ray:?}"
-                );
+                assert!(inside && short && ray.direction != [0; 3], "{name} {kind:?} {ray:?}");
             }
         }
     }
@@ -106,11 +80,7 @@ fn other_rays_do_not_meet_it_by_chance() {
         }
     }
     // Half of the edge points are no grid points: they are not all met at a vertex.
-    assert!(
-        share(Kind::AlongEdge, meets_vertex)
-            .iter()
-            .all(|&n| n < 990)
-    );
+    assert!(share(Kind::AlongEdge, meets_vertex).iter().all(|&n| n < 990));
 }
 
 #[test]
@@ -123,27 +93,16 @@ fn segments_end_on_a_surface_and_only_surface_rays_skip() {
         let segment = kind == Kind::Segment;
         assert_eq!(ray.limit, segment.then_some(0));
         assert!(!segment || on_box(ray.origin) && on_box(end), "{ray:?}");
-        assert!(
-            ray.skip.is_none() || segment || kind == Kind::FromSurface,
-            "{kind:?}"
-        );
+        assert!(ray.skip.is_none() || segment || kind == Kind::FromSurface, "{kind:?}");
     }
 }
 
 #[test]
 fn the_rays_are_the_same_on_every_machine() {
     let mesh = meshes::sphere(14, 4);
-    let sum = Rays::new(&mesh, BOUNDS[1], 7)
-        .take(10_000)
-        .fold(0u64, |sum, (_, ray)| {
-            let parts = ray
-                .origin
-                .into_iter()
-                .chain(ray.direction)
-                .chain(ray.skip.map(i64::from));
-            parts.fold(sum, |sum, part| {
-                sum.wrapping_mul(0x0100_0000_01b3) ^ part as u64
-            })
-        });
+    let sum = Rays::new(&mesh, BOUNDS[1], 7).take(10_000).fold(0u64, |sum, (_, ray)| {
+        let parts = ray.origin.into_iter().chain(ray.direction).chain(ray.skip.map(i64::from));
+        parts.fold(sum, |sum, part| sum.wrapping_mul(0x0100_0000_01b3) ^ part as u64)
+    });
     assert_eq!(sum, 14_944_510_230_401_905_773);
 }

@@ -5,6 +5,7 @@
 
 mod bytes;
 mod contents;
+mod extremes;
 mod headers;
 mod trees;
 
@@ -32,8 +33,11 @@ fn verdict<K: Kernel>(bytes: &[u8]) -> Result<(), BlobError> {
     Ok(())
 }
 
+/// What is done to a blob, in words and in deed, and what is to be said of it.
+type Damage<K> = (&'static str, fn(&mut Draft<K>), BlobError);
+
 /// Asserts what is said of the sample with each of some changes made to it.
-fn refused<K: Kernel>(smooth: bool, cases: &[(&str, fn(&mut Draft<K>), BlobError)]) {
+fn refused<K: Kernel>(smooth: bool, cases: &[Damage<K>]) {
     let good = sample::<K>(smooth);
     for (name, damage, expected) in cases {
         let mut draft = Draft::read(good.bytes()).expect("a good blob");

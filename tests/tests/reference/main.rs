@@ -8,9 +8,7 @@ mod shading;
 use std::f64::consts::FRAC_PI_2;
 
 use glam::DVec3;
-use host_tools::model::{
-    Camera, Light, LightKind, Material, Model, RenderSettings, Transfer, Triangle,
-};
+use host_tools::model::{Camera, Light, LightKind, Material, Model, RenderSettings, Transfer, Triangle};
 use tests::{meshes, oracle, random::SplitMix64};
 
 /// A triangle's vertices.
@@ -58,36 +56,13 @@ fn model(corners: &[Corners], lights: &[LightKind]) -> Model {
         positions: corners.iter().flatten().copied().collect(),
         normals: Vec::new(),
         triangles: (0..corners.len() as u32)
-            .map(|i| Triangle {
-                vertices: [3 * i, 3 * i + 1, 3 * i + 2],
-                normals: None,
-                material: 0,
-            })
+            .map(|i| Triangle { vertices: [3 * i, 3 * i + 1, 3 * i + 2], normals: None, material: 0 })
             .collect(),
-        materials: vec![Material {
-            name: "white".into(),
-            diffuse: DVec3::ONE,
-            emission: DVec3::ZERO,
-        }],
-        lights: lights
-            .iter()
-            .map(|&kind| Light {
-                kind,
-                radiance: DVec3::ONE,
-            })
-            .collect(),
-        camera: Camera {
-            position: DVec3::new(0.0, 0.0, 5.0),
-            look_at: DVec3::ZERO,
-            up: DVec3::Y,
-            fov_y: FRAC_PI_2,
-        },
+        materials: vec![Material { name: "white".into(), diffuse: DVec3::ONE, emission: DVec3::ZERO }],
+        lights: lights.iter().map(|&kind| Light { kind, radiance: DVec3::ONE }).collect(),
+        camera: Camera { position: DVec3::new(0.0, 0.0, 5.0), look_at: DVec3::ZERO, up: DVec3::Y, fov_y: FRAC_PI_2 },
         background: DVec3::new(0.1, 0.2, 0.3),
-        render: RenderSettings {
-            size: [64, 48],
-            ambient: DVec3::ZERO,
-            transfer: Transfer::Srgb,
-        },
+        render: RenderSettings { size: [64, 48], ambient: DVec3::ZERO, transfer: Transfer::Srgb },
     }
 }
 

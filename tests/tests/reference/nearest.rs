@@ -20,11 +20,7 @@ fn moller_trumbore([v0, v1, v2]: Corners, origin: DVec3, direction: DVec3) -> Op
 /// Rays whose nearest hit contradicts the loop over `corners`, and the number of hits.
 ///
 /// What lies within 1e-9 of an edge or of another hit, or is seen edge-on, may go either way.
-fn contradictions(
-    tracer: &Reference,
-    corners: &[Corners],
-    rays: &[(DVec3, DVec3)],
-) -> (usize, usize) {
+fn contradictions(tracer: &Reference, corners: &[Corners], rays: &[(DVec3, DVec3)]) -> (usize, usize) {
     const E: f64 = 1e-9;
     let contradicts = |hit: Option<Hit>, origin, direction| {
         let crossing = |prim: u32| moller_trumbore(corners[prim as usize], origin, direction);
@@ -35,9 +31,8 @@ fn contradictions(
             })
         });
         let wrong = hit.is_some_and(|hit| {
-            crossing(hit.prim).is_some_and(|[t, u, v]| {
-                (t - hit.t).abs() > E * t || (u - hit.u).abs() > E || (v - hit.v).abs() > E
-            })
+            crossing(hit.prim)
+                .is_some_and(|[t, u, v]| (t - hit.t).abs() > E * t || (u - hit.u).abs() > E || (v - hit.v).abs() > E)
         });
         missed_or_hidden || wrong
     };
@@ -65,11 +60,7 @@ fn nearest_hits_agree_with_a_loop_of_moller_trumbore() {
     let rays: Vec<_> = (0..4000)
         .map(|i| {
             let (origin, direction) = (vector(&mut random) * 2.0, vector(&mut random));
-            if i % 4 == 0 {
-                (origin, DVec3::AXES[i / 4 % 3])
-            } else {
-                (origin, (direction - origin) * 1e-3)
-            }
+            if i % 4 == 0 { (origin, DVec3::AXES[i / 4 % 3]) } else { (origin, (direction - origin) * 1e-3) }
         })
         .collect();
     let whole = model(&corners, &[]);
@@ -105,19 +96,12 @@ fn holes(corners: &[Corners], lost: Option<usize>) -> usize {
 fn a_closed_mesh_has_no_hole() {
     let corners = sphere(23);
     assert_eq!(holes(&corners, None), 0);
-    assert!(
-        holes(&corners, Some(1000)) > 0,
-        "a missing triangle is a hole"
-    );
+    assert!(holes(&corners, Some(1000)) > 0, "a missing triangle is a hole");
 }
 
 #[test]
 fn the_lower_of_equal_triangles_wins_and_the_tie_shows() {
-    let large = [
-        DVec3::new(-3.0, -3.0, 0.0),
-        DVec3::new(3.0, -3.0, 0.0),
-        DVec3::new(0.0, 4.0, 0.0),
-    ];
+    let large = [DVec3::new(-3.0, -3.0, 0.0), DVec3::new(3.0, -3.0, 0.0), DVec3::new(0.0, 4.0, 0.0)];
     let behind = large.map(|corner| corner - DVec3::Z * 1e-3);
     let scene = model(&[behind, large, large], &[]);
     let tracer = Reference::new(&scene);

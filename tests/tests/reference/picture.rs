@@ -14,11 +14,7 @@ fn pictures_do_not_depend_on_the_unit_of_length() {
         let offset = DVec3::new(0.31, 0.17, 1.5);
         let mut corners = sphere(12);
         let plate = cuboid([0, 0, 0], [900_000, 300_000, 1_000_000]);
-        corners.extend(
-            plate
-                .iter()
-                .map(|triangle| triangle.map(|corner| corner * 3.0)),
-        );
+        corners.extend(plate.iter().map(|triangle| triangle.map(|corner| corner * 3.0)));
         for corner in corners.iter_mut().flatten() {
             *corner = (*corner + offset) * scale;
         }
@@ -46,10 +42,7 @@ fn a_picture_is_its_pixels_row_by_row() {
         let (bytes, hits) = tracer.render(size, &|pixels| {
             done.fetch_add(pixels, Ordering::Relaxed);
         });
-        assert_eq!(
-            (done.into_inner(), bytes.len(), hits.len()),
-            (1200, 1200, 1200)
-        );
+        assert_eq!((done.into_inner(), bytes.len(), hits.len()), (1200, 1200, 1200));
         for (i, (&rgb, &hit)) in bytes.iter().zip(&hits).enumerate() {
             let sample = tracer.pixel(size, i as u32 % 40, i as u32 / 40);
             assert_eq!((rgb, hit), (encode(sample.colour, transfer), sample.hit));

@@ -27,9 +27,7 @@ fn a_lit_plane_has_the_cosine_of_its_light() {
             let point = DVec3::new(f64::from(x) - 31.5, 23.5 - f64::from(y), 0.0) * (5.0 / 24.0);
             let point_cosine = 3.0 / (light - point).length();
             let sun_cosine = 3.0 / 14.0_f64.sqrt();
-            let irradiance = plane.render.ambient
-                + plane.lights[0].radiance * point_cosine
-                + DVec3::splat(sun_cosine);
+            let irradiance = plane.render.ambient + plane.lights[0].radiance * point_cosine + DVec3::splat(sun_cosine);
             let expected = plane.materials[0].emission + plane.materials[0].diffuse * irradiance;
             assert!((sample.colour - expected).abs().max_element() < 1e-12);
             assert_eq!((sample.lights, sample.normal), (0b11, DVec3::Z));
@@ -51,10 +49,7 @@ fn a_known_occluder_casts_a_known_shadow() {
         quad(at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0))
     };
     let lamp = DVec3::new(0.0, 0.0, 4.0);
-    let lights = [
-        LightKind::Point(lamp),
-        LightKind::Directional(DVec3::new(1.0, 0.0, -1.0)),
-    ];
+    let lights = [LightKind::Point(lamp), LightKind::Directional(DVec3::new(1.0, 0.0, -1.0))];
     let corners = [floor, square(0.0, 2.0), square(0.0, 4.5)].concat();
     let scene = model(&corners, &lights);
     let tracer = Reference::new(&scene);
@@ -78,10 +73,7 @@ fn a_known_occluder_casts_a_known_shadow() {
 /// Dark points of a convex body, or of what else `corners` has, lit by `lamp` and seen from `eye` inside;
 /// two thirds of the rays go to vertices and edges.
 fn dark(corners: &[Corners], eye: DVec3, lamp: DVec3, shift: DVec3) -> usize {
-    let shifted: Vec<_> = corners
-        .iter()
-        .map(|triangle| triangle.map(|corner| corner + shift))
-        .collect();
+    let shifted: Vec<_> = corners.iter().map(|triangle| triangle.map(|corner| corner + shift)).collect();
     let body = model(&shifted, &[LightKind::Point(lamp + shift)]);
     let tracer = Reference::new(&body);
     let mut random = SplitMix64(4);
@@ -109,26 +101,16 @@ fn no_wall_shadows_its_neighbours() {
     let panelled = [room.clone(), panel(0.0)].concat();
     let darkened = [room.clone(), panel(1e-3)].concat();
     for shift in [DVec3::ZERO, DVec3::new(1e6, -1e6, 3e5)] {
-        for (i, body) in [&room, &wedge, &sphere(12), &panelled]
-            .into_iter()
-            .enumerate()
-        {
+        for (i, body) in [&room, &wedge, &sphere(12), &panelled].into_iter().enumerate() {
             assert_eq!(dark(body, eye, lamp, shift), 0, "body {i} at {shift}");
         }
-        assert!(
-            dark(&darkened, eye, lamp, shift) > 1000,
-            "below the lamp it is dark"
-        );
+        assert!(dark(&darkened, eye, lamp, shift) > 1000, "below the lamp it is dark");
     }
 }
 
 #[test]
 fn smooth_normals_are_interpolated_and_face_the_viewer() {
-    let corners = [
-        DVec3::new(-3.0, -3.0, 0.0),
-        DVec3::new(3.0, -3.0, 0.0),
-        DVec3::new(0.0, 3.0, 0.0),
-    ];
+    let corners = [DVec3::new(-3.0, -3.0, 0.0), DVec3::new(3.0, -3.0, 0.0), DVec3::new(0.0, 3.0, 0.0)];
     let mut scene = model(&[corners], &[LightKind::Point(DVec3::new(0.0, 0.0, 5.0))]);
     let tilted = DVec3::new(0.6, 0.0, 0.8);
     scene.triangles[0].normals = Some([0, 1, 2]);
@@ -148,9 +130,5 @@ fn smooth_normals_are_interpolated_and_face_the_viewer() {
     close(normal, -(DVec3::Z + tilted).normalize());
     assert_eq!((geometric, lights), (-DVec3::Z, 0));
     let (geometric, normal, _) = seen(&mut scene, [tilted, tilted, -tilted], 5.0);
-    assert_eq!(
-        (geometric, normal),
-        (DVec3::Z, DVec3::Z),
-        "normals that cancel"
-    );
+    assert_eq!((geometric, normal), (DVec3::Z, DVec3::Z), "normals that cancel");
 }

@@ -76,13 +76,7 @@ pub(super) fn knot() -> Part {
     const TUBE: f64 = 0.108;
     let (turn_sin, turn_cos) = libm::sincos(0.55);
     // The knot is made around the z axis; it is turned about the vertical to show its depth.
-    let turned = |v: DVec3| {
-        DVec3::new(
-            turn_cos * v.x + turn_sin * v.z,
-            v.y,
-            turn_cos * v.z - turn_sin * v.x,
-        )
-    };
+    let turned = |v: DVec3| DVec3::new(turn_cos * v.x + turn_sin * v.z, v.y, turn_cos * v.z - turn_sin * v.x);
 
     let (mut positions, mut normals) = (Vec::new(), Vec::new());
     for step in 0..ALONG {
@@ -116,13 +110,7 @@ pub(super) fn knot() -> Part {
         let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
         faces.extend([vec![a, b, c], vec![a, c, d]]);
     }
-    Part {
-        name: "knot",
-        material: "knot",
-        positions,
-        normals,
-        faces,
-    }
+    Part { name: "knot", material: "knot", positions, normals, faces }
 }
 
 /// An icosahedron with each face divided in four, on the floor on one of its 80 flat faces.
@@ -140,9 +128,7 @@ pub(super) fn gem() -> Part {
     // The faces are the triples of mutual neighbours: the edge is 2, against a radius of |(0, 1, golden)|.
     let near = |a: DVec3, b: DVec3| a.dot(b) > 0.4;
     let mut coarse = Vec::new();
-    for (a, b, c) in
-        (0..12).flat_map(|a| (a + 1..12).flat_map(move |b| (b + 1..12).map(move |c| (a, b, c))))
-    {
+    for (a, b, c) in (0..12).flat_map(|a| (a + 1..12).flat_map(move |b| (b + 1..12).map(move |c| (a, b, c)))) {
         let [p, q, r] = [a, b, c].map(|i| positions[i]);
         if near(p, q) && near(q, r) && near(r, p) {
             let outward = (q - p).cross(r - p).dot(p) > 0.0;
@@ -150,11 +136,7 @@ pub(super) fn gem() -> Part {
         }
     }
     // The middle of a divided face is square to the old face's direction; that of the first goes down.
-    let down = coarse[0]
-        .iter()
-        .map(|&i| positions[i])
-        .sum::<DVec3>()
-        .normalize();
+    let down = coarse[0].iter().map(|&i| positions[i]).sum::<DVec3>().normalize();
 
     let mut middles = HashMap::new();
     let mut faces = Vec::new();
@@ -165,44 +147,24 @@ pub(super) fn gem() -> Part {
                 positions.len() - 1
             })
         });
-        faces.extend([
-            vec![a, ab, ca],
-            vec![ab, b, bc],
-            vec![ca, bc, c],
-            vec![ab, bc, ca],
-        ]);
+        faces.extend([vec![a, ab, ca], vec![ab, b, bc], vec![ca, bc, c], vec![ab, bc, ca]]);
     }
 
     const RADIUS: f64 = 0.27;
     let side = down.cross(DVec3::Z).normalize();
     let (sin, cos) = libm::sincos(0.5);
     for position in &mut positions {
-        let v = RADIUS
-            * DVec3::new(
-                position.dot(side),
-                -position.dot(down),
-                position.dot(down.cross(side)),
-            );
+        let v = RADIUS * DVec3::new(position.dot(side), -position.dot(down), position.dot(down.cross(side)));
         *position = DVec3::new(cos * v.x + sin * v.z, v.y, cos * v.z - sin * v.x);
     }
     stand(&mut positions, DVec3::new(0.72, 0.0, 0.34));
-    Part {
-        name: "gem",
-        material: "gem",
-        positions,
-        normals: Vec::new(),
-        faces,
-    }
+    Part { name: "gem", material: "gem", positions, normals: Vec::new(), faces }
 }
 
 /// Moves `positions`, made around the origin, to `place`, the lowest of them to its height.
 fn stand(positions: &mut [DVec3], place: DVec3) {
-    let lowest = positions
-        .iter()
-        .fold(f64::INFINITY, |lowest, position| lowest.min(position.y));
-    positions
-        .iter_mut()
-        .for_each(|position| *position += place - lowest * DVec3::Y);
+    let lowest = positions.iter().fold(f64::INFINITY, |lowest, position| lowest.min(position.y));
+    positions.iter_mut().for_each(|position| *position += place - lowest * DVec3::Y);
 }
 
 #[cfg(test)]
@@ -210,27 +172,18 @@ mod tests {
     use super::*;
 
     fn triangles(part: &Part) -> impl Iterator<Item = [usize; 3]> {
-        part.faces
-            .iter()
-            .flat_map(|face| face[1..].windows(2).map(|pair| [face[0], pair[0], pair[1]]))
+        part.faces.iter().flat_map(|face| face[1..].windows(2).map(|pair| [face[0], pair[0], pair[1]]))
     }
 
     /// Whether each edge is there once in each direction: closed, and wound the same way throughout.
     fn is_closed(part: &Part) -> bool {
-        let edges: Vec<_> = triangles(part)
-            .flat_map(|[a, b, c]| [(a, b), (b, c), (c, a)])
-            .collect();
+        let edges: Vec<_> = triangles(part).flat_map(|[a, b, c]| [(a, b), (b, c), (c, a)]).collect();
         let count = |edge| edges.iter().filter(|&&other| other == edge).count();
-        edges
-            .iter()
-            .all(|&(a, b)| count((a, b)) == 1 && count((b, a)) == 1)
+        edges.iter().all(|&(a, b)| count((a, b)) == 1 && count((b, a)) == 1)
     }
 
     fn volume(part: &Part) -> f64 {
-        triangles(part)
-            .map(|face| face.map(|i| part.positions[i]))
-            .map(|[a, b, c]| a.dot(b.cross(c)) / 6.0)
-            .sum()
+        triangles(part).map(|face| face.map(|i| part.positions[i])).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()
     }
 
     #[test]
@@ -251,11 +204,7 @@ mod tests {
     fn smooth_normals_are_unit_and_near_their_faces() {
         let knot = knot();
         assert_eq!(knot.normals.len(), knot.positions.len());
-        assert!(
-            knot.normals
-                .iter()
-                .all(|normal| (normal.length() - 1.0).abs() < 1e-12)
-        );
+        assert!(knot.normals.iter().all(|normal| (normal.length() - 1.0).abs() < 1e-12));
         for [a, b, c] in triangles(&knot) {
             let p = |i: usize| knot.positions[i];
             let face = (p(b) - p(a)).cross(p(c) - p(a)).normalize();
@@ -271,24 +220,15 @@ mod tests {
                 assert!((b - a).cross(c - a).dot(middle - a) > 0.0, "{}", wall.name);
             }
         }
-        let inside = |v: &DVec3| {
-            v.x.abs() <= ROOM.x && v.z.abs() <= ROOM.z && (-1e-9..=ROOM.y).contains(&v.y)
-        };
+        let inside = |v: &DVec3| v.x.abs() <= ROOM.x && v.z.abs() <= ROOM.z && (-1e-9..=ROOM.y).contains(&v.y);
         let parts = room().into_iter().chain([plinth(), knot(), gem()]);
-        assert!(
-            parts
-                .flat_map(|part| part.positions)
-                .all(|position| inside(&position))
-        );
+        assert!(parts.flat_map(|part| part.positions).all(|position| inside(&position)));
     }
 
     #[test]
     fn counts_are_as_meant() {
         let count = |part: &Part| triangles(part).count();
         let walls: usize = room().iter().map(count).sum();
-        assert_eq!(
-            [walls, count(&plinth()), count(&knot()), count(&gem())],
-            [12, 22, 1456, 80]
-        );
+        assert_eq!([walls, count(&plinth()), count(&knot()), count(&gem())], [12, 22, 1456, 80]);
     }
 }

@@ -1,0 +1,128 @@
+//! A `scene.toml` that says what cannot be.
+
+use crate::command::Folder;
+
+/// Renders `scene.toml`, which is `model = "scene.obj"` and these lines, and expects the message with its line.
+#[track_caller]
+fn refused(lines: &str, message: &str) {
+    let folder = Folder::with_triangle();
+    folder.write("scene.toml", format!("model = \"scene.obj\"\n{lines}\n").as_bytes());
+    folder.refuses("render scene.toml -o out.png", &format!("error: scene.toml:{message}\n"));
+}
+
+#[test]
+fn keys_and_values_of_the_wrong_kind() {
+    for (lines, message) in [
+        ("transfr = 'srgb'", "2: unknown key `transfr`; the nearest known one is `transfer`"),
+        ("[camera]\nfov = 40", "3: unknown key `fov`; the nearest known one is `fov_y`"),
+        ("[[light]]\ncolor = [1, 1, 1]", "3: unknown key `color`; the nearest known one is `colour`"),
+        ("transfer = 'rgb'", "2: unknown value `rgb`; the nearest known one is `srgb`"),
+        ("[camera]\nfov_y = 'wide'", "3: invalid type: string \"wide\", expected a number"),
+        ("[camera]\nposition = 1", "3: invalid type: integer `1`, expected three numbers such as [0, 1, 5]"),
+        ("[camera]\nposition = [0, 1]", "3: invalid length 2, expected three numbers such as [0, 1, 5]"),
+        ("[camera]\nposition = [0, 1, 'x']", "3: invalid type: string \"x\", expected a number"),
+        ("[camera]\nposition = [0, nan, 5]", "3: NaN is not a finite number"),
+        ("[camera]\nfov_y = inf", "3: inf is not a finite number"),
+        ("[[light]]\nposition = [0, 0, 0]\nintensity = nan", "4: NaN is not a finite number"),
+        ("camera = 3", "2: invalid type: integer `3`, expected a table such as [camera]"),
+        ("light = 3", "2: invalid type: integer `3`, expected an array"),
+        ("[light]", "2: there may be several of these; double the brackets, such as [[light]]"),
+        ("material = 3", "2: invalid type: integer `3`, expected a table"),
+        ("[render]\nsize = '640x480'", "3: invalid type: string \"640x480\", expected an array"),
+        ("[render]\nsize = [99999999999999999999, 1]", {
+            "3: invalid type: integer `99999999999999999999`, expected a number"
+        }),
+        ("[camera", "2: unclosed table, expected `]`"),
+        ("model = 'other.obj'", "2: duplicate key"),
+    ] {
+        refused(lines, message);
+    }
+}
+
+#[test]
+fn the_model() {
+    for (text, message) in [
+        ("transfer = 'srgb'\n", "1: `model` is missing; name an OBJ file, such as model = \"room.obj\""),
+        ("model = 3\n", "1: invalid type: integer `3`, expected a string"),
+        ("\nmodel = 'none.obj'\n", "2: model none.obj: no such file"),
+        ("model = 'scene.toml'\n", "1: model scene.toml: a model is an .obj file"),
+        ("model = scene.obj\n", "1: string values must be quoted, expected literal string"),
+    ] {
+        let folder = Folder::with_triangle();
+        folder.write("scene.toml", text.as_bytes());
+        folder.refuses("render scene.toml -o out.png", &format!("error: scene.toml:{message}\n"));
+    }
+    // What is wrong with the OBJ is said of the OBJ.
+    let folder = Folder::new(&[("scene.toml", b"model = 'scene.obj'"), ("scene.obj", b"v 1 2\n")]);
+    folder.refuses("inspect scene.toml", "error: scene.obj:1: too few numbers: 2 of at least 3\n");
+}
+
+#[test]
+fn cameras_that_see_nothing() {
+    for (lines, message) in [
+        (
+            "[camera]\nposition = [1, 2, 3]\nlook_at = [1, 2, 3]",
+            "4: the camera is at its own look_at; move one of them",
+        ),
+        ("[camera]\nfov_y = 0", "3: fov_y of 0 degrees; it must be above 0 and below 180"),
+        ("[camera]\nfov_y = 400", "3: fov_y of 400 degrees; it must be above 0 and below 180"),
+        ("[camera]\nfov_y = -40", "3: fov_y of -40 degrees; it must be above 0 and below 180"),
+        (
+            "[camera]\nposition = [0, 5, 0]\nlook_at = [0, 0, 0]",
+            "2: up is parallel to the view; give an up that is upwards in the picture",
+        ),
+        ("[camera]\nposition = [0, 5, 0]", "3: a position needs a look_at as well"),
+    ] {
+        refused(lines, message);
+    }
+}
+
+#[test]
+fn pictures_that_cannot_be() {
+    for size in
+        ["[0, 480]", "[640, 0]", "[640, -480]", "[640.5, 480]", "[640]", "[16385, 1]", "[16384, 16384]", "[1e300, 1]"]
+    {
+        refused(
+            &format!("[render]\nsize = {size}"),
+            "3: size must be a width and a height in whole pixels, such as [640, 480]; a picture has 1 to 16384 pixels a \
+             side, and at most 67108864 in all",
+        );
+    }
+}
+
+/// A camera or a light so far away that the geometry is a point on the grid.
+#[test]
+fn distances_beyond_the_grid() {
+    for lines in ["[camera]\nposition = [1e30, 0, 0]\nlook_at = [0, 0, 0]", "[[light]]\nposition = [0, 0, 1e30]"] {
+        refused(
+            lines,
+            " none of 1 triangles has an area on the 29-bit grid of exact29, so nothing is left to render; check the \
+             vertices, or bring the camera and the lights closer to them",
+        );
+    }
+}
+
+/// What is strange and can be drawn all the same.
+#[test]
+fn extremes_that_are_good() {
+    for lines in [
+        "[camera]\nposition = [1e8, 3, 0]\nlook_at = [0, 0, 0]",
+        "[camera]\nposition = [3, 3, 0]\nlook_at = [0, 0, 0]\nfov_y = 179.99999999999",
+        "[camera]\nposition = [3, 3, 0]\nlook_at = [0, 0, 0]\nfov_y = 1e-310",
+        "[camera]\nposition = [3, 3, 0]\nlook_at = [0, 0, 0]\nup = [0, 1e-30, 0]",
+        "[camera]\nposition = [0.5, 0.5, 0.5]\nlook_at = [0.5000000001, 0.5, 0.5]",
+        "[[light]]\nposition = [0, 0, 1e8]\nintensity = 1e30\ncolour = [1e30, 1, 1e-30]",
+        "[[light]]\nkind = 'directional'\ndirection = [0, 1e-30, 0]",
+        "[[light]]\nposition = [0.5, 0.5, 0.5]\nintensity = 0",
+        "[background]\ncolour = [1e30, 0, 0]\n[render]\nambient = [1e-30, 1e30, 0]",
+    ] {
+        for kernel in ["exact29", "exact14"] {
+            let folder = Folder::with_triangle();
+            folder.write("scene.toml", format!("model = 'scene.obj'\n{lines}\n").as_bytes());
+            // A smaller grid may hold less of what is far; it says so then.
+            if kernel == "exact29" || !lines.contains("1e8") {
+                folder.succeeds(&format!("render scene.toml --size 9x7 --kernel {kernel} -o out.png"), "");
+            }
+        }
+    }
+}
