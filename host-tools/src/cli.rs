@@ -4,6 +4,7 @@
 
 mod compare;
 mod demo;
+mod emulate;
 mod failure;
 mod input;
 mod inspect;
@@ -11,6 +12,7 @@ mod output;
 mod prep;
 mod progress;
 mod render;
+mod run_elf;
 
 use std::process::ExitCode;
 
@@ -34,6 +36,9 @@ enum Command {
     Inspect(inspect::Arguments),
     Render(render::Arguments),
     Compare(compare::Arguments),
+    Emulate(emulate::Arguments),
+    #[command(hide = true)]
+    RunElf(run_elf::Arguments),
 }
 
 /// Runs the command that the process was called with.
@@ -45,6 +50,8 @@ pub fn run() -> ExitCode {
         Some(Command::Inspect(arguments)) => inspect::run(&arguments),
         Some(Command::Render(arguments)) => render::run(&arguments),
         Some(Command::Compare(arguments)) => compare::run(&arguments),
+        Some(Command::Emulate(arguments)) => emulate::run(&arguments),
+        Some(Command::RunElf(arguments)) => run_elf::run(&arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -7,6 +7,7 @@ use core_rt::exact::{Exact14, Exact29};
 use core_rt::kernel::Kernel;
 use core_rt::profile::Full;
 use core_rt::scene::Scene;
+use float_rt::{Float32, Float64};
 
 use crate::model::Model;
 use crate::prepare::{self, Options, PrepareError, Prepared};
@@ -90,7 +91,12 @@ impl<K: Kernel> Engine for Of<K> {
 }
 
 /// All kernels, the default of `render` first.
-pub const ENGINES: [&dyn Engine; 2] = [&Of::<Exact29>(PhantomData), &Of::<Exact14>(PhantomData)];
+pub const ENGINES: [&dyn Engine; 4] = [
+    &Of::<Exact29>(PhantomData),
+    &Of::<Exact14>(PhantomData),
+    &Of::<Float32>(PhantomData),
+    &Of::<Float64>(PhantomData),
+];
 
 /// The kernel of a name.
 #[must_use]

@@ -4,6 +4,8 @@
 pub mod builtin;
 pub mod cli;
 pub mod compare;
+pub mod decimate;
+pub mod emulate;
 pub mod engine;
 pub mod files;
 pub mod grid;

@@ -89,16 +89,19 @@ fn used<K: Kernel>(header: &Header, shading: &Shading<'_, K>) -> Needs {
         .with(Need::Linear, header.transfer == Transfer::Linear)
 }
 
-/// A subtree to be checked: its reference, the node and slot that hold it, and its level.
-type Pending = (u32, Option<(u32, bool)>, u8);
+/// A node whose second child is still to be checked, and that child's level.
+type Pending = (u32, u8);
 
+// Out of line, so that its stack is not on top of what the header takes while it is decoded.
+#[inline(never)]
 fn tree<K: Kernel>(header: &Header, bvh: &Bvh<'_, K>) -> Result<(), BlobError> {
     // The root has no parent, but what the box test computes with must lie on the grid.
     let (low, high) = (K::MARGIN, (1 << K::GRID_BITS) - 1 - K::MARGIN);
     let grid = Bounds { low: [low; 3], high: [high; 3] };
     let (mut next_node, mut next_triangle) = (0, 0);
     let mut pending: Vec<Pending, { MAX_DEPTH + 1 }> = Vec::new();
-    let mut current: Pending = (bvh.root, None, 0);
+    // A subtree: its reference, the node and slot that hold it, and its level.
+    let mut current: (u32, Option<(u32, bool)>, u8) = (bvh.root, None, 0);
     loop {
         let (reference, holder, level) = current;
         let node = holder.map_or(0, |(node, _)| node);
@@ -120,10 +123,8 @@ fn tree<K: Kernel>(header: &Header, bvh: &Bvh<'_, K>) -> Result<(), BlobError> {
                 if !K::boxes(record).iter().all(inside) {
                     return Err(BlobError::Bounds { node });
                 }
-                let [first, second] = K::children(record);
-                pending
-                    .push((second, Some((index, true)), level + 1))
-                    .map_err(|_| BlobError::Depth { stated: header.depth })?;
+                let [first, _] = K::children(record);
+                pending.push((index, level + 1)).map_err(|_| BlobError::Depth { stated: header.depth })?;
                 current = (first, Some((index, false)), level + 1);
             }
             Child::Leaf { first, count } => {
@@ -136,10 +137,10 @@ fn tree<K: Kernel>(header: &Header, bvh: &Bvh<'_, K>) -> Result<(), BlobError> {
                 if !run.iter().all(|t| inside(&Bounds::of(&K::vertices(t)))) {
                     return Err(BlobError::Bounds { node });
                 }
-                match pending.pop() {
-                    Some(waiting) => current = waiting,
-                    None => break,
-                }
+                let Some((node, level)) = pending.pop() else { break };
+                let record = bvh.nodes.get(node as usize).ok_or(BlobError::Tree { node })?;
+                let [_, second] = K::children(record);
+                current = (second, Some((node, true)), level);
             }
         }
     }

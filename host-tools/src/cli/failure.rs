@@ -17,6 +17,11 @@ impl Failure {
         Self { message: message.into(), status: 2 }
     }
 
+    /// What was asked for was done, and did not come out well: status 1.
+    pub(super) fn check(message: impl Into<String>) -> Self {
+        Self { message: message.into(), status: 1 }
+    }
+
     /// Prints the message.
     pub(super) fn report(&self) -> ExitCode {
         message("error", &self.message);
@@ -27,6 +32,11 @@ impl Failure {
 /// Says on stderr what will not be seen as it was meant.
 pub(super) fn warn(warning: impl Display) {
     message("warning", warning);
+}
+
+/// Passes on what another says, on stderr.
+pub(super) fn note(line: impl Display) {
+    let _ = writeln!(std::io::stderr(), "{line}");
 }
 
 fn message(kind: &str, text: impl Display) {

@@ -7,8 +7,11 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use core_rt::blob::{BlobError, Prefix};
 use core_rt::bvh::Child;
+use core_rt::exact::Exact14;
+use core_rt::kernel::Kernel;
 
 use super::failure::{Failure, warn};
+use crate::decimate;
 use crate::engine::{self, ENGINES, Engine};
 use crate::files;
 use crate::import::{self, Imported};
@@ -23,7 +26,7 @@ pub(super) struct SceneArguments {
     /// A scene.toml, a bare .obj, or a blob
     pub(super) scene: PathBuf,
 
-    /// The arithmetic; of a blob, its own [default: exact29]
+    /// The arithmetic; of a blob, its own [default: exact29, on a chip exact14]
     #[arg(long, value_parser = PossibleValuesParser::new(ENGINES.map(|engine| engine.name())))]
     pub(super) kernel: Option<String>,
 
@@ -39,6 +42,15 @@ pub(super) struct SceneArguments {
         allow_negative_numbers = true
     )]
     pub(super) leaf: Option<u32>,
+
+    /// Decimate the scene to so many triangles or fewer, before anything else
+    #[arg(
+        long,
+        value_name = "N",
+        value_parser = clap::value_parser!(u32).range(1..=i64::from(Child::INDEX_END)),
+        allow_negative_numbers = true
+    )]
+    pub(super) triangles: Option<u32>,
 }
 
 /// A blob, with the kernel that it is for and what it was made from.
@@ -52,20 +64,34 @@ pub(super) struct Scene {
 impl SceneArguments {
     /// Reads the scene and prepares it. Warnings go to stderr.
     pub(super) fn load(&self) -> Result<Scene, Failure> {
+        self.load_for(ENGINES[0])
+    }
+
+    /// The same, where a chip is to render it: with another kernel unless one is asked for.
+    pub(super) fn load_for_chip(&self) -> Result<Scene, Failure> {
+        self.load_for(engine::by_id(Exact14::ID).unwrap_or(ENGINES[0]))
+    }
+
+    /// Reads the scene and prepares it, for `default` where neither it nor the user names a kernel.
+    fn load_for(&self, default: &'static dyn Engine) -> Result<Scene, Failure> {
         let extension = self.scene.extension().map(|extension| extension.to_ascii_lowercase());
         match extension.as_deref().and_then(OsStr::to_str) {
-            Some("obj" | "toml") => self.load_model(),
+            Some("obj" | "toml") => self.load_model(default),
             _ => self.load_blob(),
         }
     }
 
     /// Reads and prepares a model for the kernel asked for.
-    fn load_model(&self) -> Result<Scene, Failure> {
+    fn load_model(&self, default: &'static dyn Engine) -> Result<Scene, Failure> {
         let mut model = model(&self.scene)?;
         if let Some(size) = self.size {
             model.render.size = size;
         }
-        let engine = self.engine().unwrap_or(ENGINES[0]);
+        if let Some(target) = self.triangles {
+            model = decimate::decimate(model, target as usize)
+                .map_err(|error| Failure::input(format!("{}: {error}", self.scene.display())))?;
+        }
+        let engine = self.engine().unwrap_or(default);
         let prepared = engine
             .prepare(&model, &self.options())
             .map_err(|error| Failure::input(format!("{}: {error}", self.scene.display())))?;
@@ -103,10 +129,10 @@ impl SceneArguments {
         if !size_is_allowed(own[0], own[1]) {
             return Err(Failure::input(format!("{path}: the blob is for {}x{} pixels; {SIZES}", own[0], own[1])));
         }
-        if self.leaf.is_some() || self.size.is_some_and(|size| size != own) {
+        if self.leaf.is_some() || self.triangles.is_some() || self.size.is_some_and(|size| size != own) {
             return Err(Failure::input(format!(
-                "{path}: the blob is for {}x{} pixels, and its tree is built; --size and --leaf need the scene that it was \
-                 made from",
+                "{path}: the blob is for {}x{} pixels, and its tree is built; --size, --leaf and --triangles need the \
+                 scene that it was made from",
                 own[0], own[1]
             )));
         }

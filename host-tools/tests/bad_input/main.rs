@@ -6,6 +6,7 @@
 mod arguments;
 mod blobs;
 mod command;
+mod decimation;
 mod good;
 mod outputs;
 mod pictures;

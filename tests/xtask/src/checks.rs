@@ -5,6 +5,7 @@
 //! that comparing with them in debug and release too shows that no result depends on the optimisation level.
 
 use crate::fuzz;
+use crate::qemu::QEMU;
 use crate::steps::Step;
 use crate::task::Task;
 use crate::tool::{CARGO_FUZZ, CLIPPY, IMAGEMAGICK, NIGHTLY, RISCV32IMAC, RUSTFMT, THUMBV6M};
@@ -23,19 +24,25 @@ pub(crate) fn steps(long: bool) -> Vec<Step> {
         Step::new("lints", Task::new("cargo clippy --workspace --all-targets -- -D warnings")).needing(&[CLIPPY]),
         Step::new(
             "documentation",
-            Task::new("cargo doc --no-deps -p core-rt -p host-tools").with("RUSTDOCFLAGS", "-D warnings"),
+            Task::new("cargo doc --no-deps -p core-rt -p float-rt -p host-tools").with("RUSTDOCFLAGS", "-D warnings"),
         ),
         Step::new(
-            "the core for the chips",
+            "the cores for the chips",
             Task::new(
-                "cargo build -p core-rt --release --target thumbv6m-none-eabi --target riscv32imac-unknown-none-elf",
+                "cargo build -p core-rt -p float-rt --release --target thumbv6m-none-eabi \
+                 --target riscv32imac-unknown-none-elf",
             ),
         )
         .needing(&[THUMBV6M, RISCV32IMAC]),
-        Step::new("unit tests, debug", test("cargo test -p core-rt -p host-tools -p xtask")),
+        Step::new(
+            "unit tests, debug",
+            test("cargo test -p core-rt -p firmware-rt -p float-rt -p host-tools -p qemu-plugin -p xtask"),
+        ),
         Step::new("goldens, debug", Task::new("cargo test -p tests --test goldens")),
         Step::new("ImageMagick's counts", Task::new("cargo test -p tests --profile checked --test imagemagick"))
             .needing(&[IMAGEMAGICK]),
+        Step::new("instruction counts", Task::new("cargo test -p tests --profile checked --test qemu_plugin"))
+            .needing(&[QEMU]),
         Step::new("all of tests, optimised and overflow-checked", test("cargo test -p tests --profile checked")),
         Step::new("goldens, release", Task::new("cargo test -p tests --release --test goldens")),
     ];

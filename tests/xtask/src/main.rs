@@ -1,8 +1,11 @@
 //! The task runner. It depends on little, for it is the first thing that a new user waits for.
 
+mod bench_scene;
 mod checks;
 mod demo_scene;
 mod fuzz;
+mod obj;
+mod qemu;
 mod steps;
 mod task;
 mod tool;
@@ -15,29 +18,35 @@ use task::Task;
 
 const USAGE: &str = "\
 usage: cargo xtask VERB
+  setup                installs what the emulated boards need: targets and QEMU
   test [--long]        runs every check, after installing what they need
   fuzz [--seconds N]   fuzzes the blob and the importers, N seconds each (60)
-  bless                renews the goldens and shows which changed
-  demo-scene           writes scenes/demo anew";
+  bless                renews the goldens and the README's figures, and shows which changed
+  demo-scene           writes scenes/demo anew
+  bench-scene          writes scenes/bench-1k anew";
 
 /// What can be asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Verb {
+    Setup,
     Test { long: bool },
     Fuzz { seconds: u32 },
     Bless,
     DemoScene,
+    BenchScene,
 }
 
 impl Verb {
     fn parse(words: &[&str]) -> Option<Self> {
         match *words {
+            ["setup"] => Some(Self::Setup),
             ["test"] => Some(Self::Test { long: false }),
             ["test", "--long"] => Some(Self::Test { long: true }),
             ["fuzz"] => Some(Self::Fuzz { seconds: 60 }),
             ["fuzz", "--seconds", seconds] => Some(Self::Fuzz { seconds: seconds.parse().ok()? }),
             ["bless"] => Some(Self::Bless),
             ["demo-scene"] => Some(Self::DemoScene),
+            ["bench-scene"] => Some(Self::BenchScene),
             _ => None,
         }
     }
@@ -66,6 +75,7 @@ fn main() -> ExitCode {
 /// Does what was asked for, in the root of the workspace.
 fn perform(verb: Verb) -> Result<(), String> {
     match verb {
+        Verb::Setup => tool::provide_all(&[tool::THUMBV6M, tool::RISCV32IMAC, qemu::QEMU]),
         Verb::Test { long } => {
             fuzz::prepare().map_err(|error| format!("tests/fuzz: {error}"))?;
             run(&checks::steps(long)).map(drop)
@@ -78,13 +88,17 @@ fn perform(verb: Verb) -> Result<(), String> {
         Verb::Bless => run(&[
             Step::new(
                 "new goldens",
-                Task::new("cargo test -p tests --release --test goldens").with("INTRAY_BLESS", "1"),
+                Task::new("cargo test -p tests --release --test bench_scene --test goldens --test readme")
+                    .with("INTRAY_BLESS", "1"),
             ),
-            Step::new("goldens that changed", Task::new("git --no-pager diff --stat -- tests/goldens")),
-            Step::new("goldens by their state", Task::new("git status --short -- tests/goldens")),
+            Step::new("what changed", Task::new("git --no-pager diff --stat -- tests/goldens README.md docs")),
+            Step::new("what is new", Task::new("git status --short -- tests/goldens README.md docs")),
         ])
         .map(drop),
         Verb::DemoScene => demo_scene::write(Path::new("scenes/demo")).map_err(|error| format!("scenes/demo: {error}")),
+        Verb::BenchScene => {
+            bench_scene::write(Path::new("scenes/bench-1k")).map_err(|error| format!("scenes/bench-1k: {error}"))
+        }
     }
 }
 
@@ -106,6 +120,7 @@ mod tests {
 
     #[test]
     fn verbs_are_taken_whole_or_not_at_all() {
+        assert_eq!(Verb::parse(&["setup"]), Some(Verb::Setup));
         assert_eq!(Verb::parse(&["test"]), Some(Verb::Test { long: false }));
         assert_eq!(Verb::parse(&["test", "--long"]), Some(Verb::Test { long: true }));
         assert_eq!(Verb::parse(&["fuzz", "--seconds", "5"]), Some(Verb::Fuzz { seconds: 5 }));

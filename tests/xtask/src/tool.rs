@@ -32,6 +32,20 @@ impl Tool {
     }
 }
 
+/// Installs what is missing of several tools.
+///
+/// # Errors
+/// Where an installation that should work did not, and where something could not be had, with how to get it by hand.
+pub(crate) fn provide_all(tools: &[Tool]) -> Result<(), String> {
+    let mut missing = Vec::new();
+    for tool in tools {
+        if !tool.provide().map_err(|failure| failure.reason)? {
+            missing.push(format!("there is no {} (get it by: {})", tool.name, tool.hint));
+        }
+    }
+    if missing.is_empty() { Ok(()) } else { Err(missing.join("\n")) }
+}
+
 /// For formatting.
 pub(crate) const RUSTFMT: Tool = Tool {
     name: "rustfmt",
@@ -116,15 +130,25 @@ fn rustup(arguments: &str) -> Result<(), Failure> {
 
 /// Without root or network the package stays absent, which whoever asked for it finds and reports.
 fn apt(package: &str) {
-    let is_root = Task::new("id -u").answer().as_deref() == Some("0");
-    if is_root && succeeds("apt-get --version") {
-        let apt_get = |line: &str| Task::new(line).with("DEBIAN_FRONTEND", "noninteractive").run();
-        let installed = apt_get("apt-get update")
-            .and_then(|()| apt_get(&format!("apt-get install --yes --no-install-recommends {package}")));
-        if let Err(failure) = installed {
+    if can_apt() {
+        let install = || apt_get(&format!("install --yes --no-install-recommends {package}"));
+        if let Err(failure) = apt_get("update").and_then(|()| install()) {
             println!("{}", failure.reason);
         }
     }
+}
+
+/// Whether packages can be installed without asking.
+pub(crate) fn can_apt() -> bool {
+    Task::new("id -u").answer().as_deref() == Some("0") && succeeds("apt-get --version")
+}
+
+/// Runs `apt-get`, which then asks no questions.
+///
+/// # Errors
+/// Where it fails.
+pub(crate) fn apt_get(arguments: &str) -> Result<(), Failure> {
+    Task::new(&format!("apt-get {arguments}")).with("DEBIAN_FRONTEND", "noninteractive").run()
 }
 
 #[cfg(test)]
@@ -149,5 +173,9 @@ mod tests {
         assert!(Tool { is_present: || false, ..there }.provide().is_err());
         let absent = Tool { is_present: || false, install: || Ok(()), ..RUSTFMT };
         assert!(absent.provide().is_ok_and(|present| !present));
+
+        assert_eq!(provide_all(&[there, there]), Ok(()));
+        let message = "there is no rustfmt (get it by: rustup component add rustfmt)".to_owned();
+        assert_eq!(provide_all(&[there, absent, there]), Err(message));
     }
 }

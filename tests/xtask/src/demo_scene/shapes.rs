@@ -171,33 +171,18 @@ fn stand(positions: &mut [DVec3], place: DVec3) {
 mod tests {
     use super::*;
 
-    fn triangles(part: &Part) -> impl Iterator<Item = [usize; 3]> {
-        part.faces.iter().flat_map(|face| face[1..].windows(2).map(|pair| [face[0], pair[0], pair[1]]))
-    }
-
-    /// Whether each edge is there once in each direction: closed, and wound the same way throughout.
-    fn is_closed(part: &Part) -> bool {
-        let edges: Vec<_> = triangles(part).flat_map(|[a, b, c]| [(a, b), (b, c), (c, a)]).collect();
-        let count = |edge| edges.iter().filter(|&&other| other == edge).count();
-        edges.iter().all(|&(a, b)| count((a, b)) == 1 && count((b, a)) == 1)
-    }
-
-    fn volume(part: &Part) -> f64 {
-        triangles(part).map(|face| face.map(|i| part.positions[i])).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()
-    }
-
     #[test]
     fn solids_are_closed_and_face_outwards() {
         for part in [knot(), gem()] {
-            assert!(is_closed(&part), "{}", part.name);
-            assert!(volume(&part) > 0.0, "{}", part.name);
+            assert!(part.is_closed(), "{}", part.name);
+            assert!(part.volume() > 0.0, "{}", part.name);
         }
         let mut open = gem();
         open.faces.pop();
-        assert!(!is_closed(&open));
+        assert!(!open.is_closed());
         let mut inside_out = knot();
         inside_out.faces.iter_mut().for_each(|face| face.reverse());
-        assert!(is_closed(&inside_out) && volume(&inside_out) < 0.0);
+        assert!(inside_out.is_closed() && inside_out.volume() < 0.0);
     }
 
     #[test]
@@ -205,7 +190,7 @@ mod tests {
         let knot = knot();
         assert_eq!(knot.normals.len(), knot.positions.len());
         assert!(knot.normals.iter().all(|normal| (normal.length() - 1.0).abs() < 1e-12));
-        for [a, b, c] in triangles(&knot) {
+        for [a, b, c] in knot.triangles() {
             let p = |i: usize| knot.positions[i];
             let face = (p(b) - p(a)).cross(p(c) - p(a)).normalize();
             assert!([a, b, c].iter().all(|&i| knot.normals[i].dot(face) > 0.95));
@@ -216,7 +201,7 @@ mod tests {
     fn the_room_faces_inwards_and_holds_everything() {
         let middle = DVec3::new(0.0, 1.0, 0.0);
         for wall in room() {
-            for [a, b, c] in triangles(&wall).map(|face| face.map(|i| wall.positions[i])) {
+            for [a, b, c] in wall.triangles().map(|face| face.map(|i| wall.positions[i])) {
                 assert!((b - a).cross(c - a).dot(middle - a) > 0.0, "{}", wall.name);
             }
         }
@@ -227,7 +212,7 @@ mod tests {
 
     #[test]
     fn counts_are_as_meant() {
-        let count = |part: &Part| triangles(part).count();
+        let count = |part: &Part| part.triangles().count();
         let walls: usize = room().iter().map(count).sum();
         assert_eq!([walls, count(&plinth()), count(&knot()), count(&gem())], [12, 22, 1456, 80]);
     }

@@ -1,0 +1,30 @@
+//! Renders the blob in a hifive1's flash. On the host there is nothing to do but to say so.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(target_os = "none")]
+mod chip;
+
+#[cfg(target_os = "none")]
+mod program {
+    use firmware_rt::board::HIFIVE1;
+    use firmware_rt::end::end;
+    use firmware_rt::{run, stack};
+
+    include!(concat!(env!("OUT_DIR"), "/firmware.rs"));
+
+    #[riscv_rt::entry]
+    fn main() -> ! {
+        // SAFETY: the linker script is made from the board; nothing but the stack lies there.
+        unsafe { stack::paint(HIFIVE1.stack) };
+        let storage = &raw mut STORAGE;
+        // SAFETY: this function is entered once, and nothing else names the storage.
+        let storage = unsafe { &mut *storage };
+        end(run::run::<This, _>(storage), || ())
+    }
+}
+
+#[cfg(not(target_os = "none"))]
+fn main() {
+    eprintln!("this is firmware: cargo run -p firmware-riscv --target riscv32imac-unknown-none-elf");
+    std::process::exit(2);
+}

@@ -1,0 +1,95 @@
+//! Boards: where code, blob, stack and variables lie.
+//!
+//! The blob has a part of the flash of its own, so that a scene can change without a rebuild. The stack lies at the
+//! bottom of the RAM, as flip-link has it: one that grows too far leaves the RAM and faults, instead of growing into
+//! variables.
+
+/// A run of addresses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Region {
+    /// The first address.
+    pub start: u32,
+    /// Bytes.
+    pub length: u32,
+}
+
+impl Region {
+    /// The first address behind it.
+    #[must_use]
+    pub const fn end(&self) -> u32 {
+        self.start + self.length
+    }
+}
+
+/// A board that firmware is built for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Board {
+    /// On the command line.
+    pub name: &'static str,
+    /// Its chip and core.
+    pub chip: &'static str,
+    /// What rustc calls it.
+    pub target: &'static str,
+    /// The package of its firmware.
+    pub package: &'static str,
+    /// Flash for code and constants.
+    pub code: Region,
+    /// Flash for the blob.
+    pub blob: Region,
+    /// RAM for the stack, which grows towards the start.
+    pub stack: Region,
+    /// RAM for variables.
+    pub ram: Region,
+}
+
+const KIB: u32 = 1 << 10;
+
+/// BBC micro:bit v1: 256 KiB of flash, 16 KiB of RAM.
+pub const MICROBIT: Board = Board {
+    name: "microbit",
+    chip: "nRF51822, Cortex-M0",
+    target: "thumbv6m-none-eabi",
+    package: "firmware-cortexm",
+    code: Region { start: 0, length: 64 * KIB },
+    blob: Region { start: 0x0001_0000, length: 192 * KIB },
+    stack: Region { start: 0x2000_0000, length: 8 * KIB },
+    ram: Region { start: 0x2000_2000, length: 8 * KIB },
+};
+
+/// SiFive HiFive1 Rev B: 4 MiB of flash, the first 64 KiB of it the boot loader's; 16 KiB of RAM.
+pub const HIFIVE1: Board = Board {
+    name: "hifive1",
+    chip: "FE310, rv32imac",
+    target: "riscv32imac-unknown-none-elf",
+    package: "firmware-riscv",
+    code: Region { start: 0x2001_0000, length: 448 * KIB },
+    blob: Region { start: 0x2008_0000, length: 3584 * KIB },
+    stack: Region { start: 0x8000_0000, length: 8 * KIB },
+    ram: Region { start: 0x8000_2000, length: 8 * KIB },
+};
+
+/// All boards.
+pub const BOARDS: [&Board; 2] = [&MICROBIT, &HIFIVE1];
+
+/// The board of a name.
+#[must_use]
+pub fn by_name(name: &str) -> Option<&'static Board> {
+    BOARDS.into_iter().find(|board| board.name == name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn regions_do_not_overlap_and_the_stack_is_at_the_bottom() {
+        for board in BOARDS {
+            assert!(board.code.end() <= board.blob.start, "{}", board.name);
+            assert_eq!(board.stack.end(), board.ram.start, "{}", board.name);
+            assert_eq!(board.stack.length + board.ram.length, 16 * KIB, "{}", board.name);
+            assert_eq!((board.blob.start % 8, board.ram.start % 16), (0, 0), "{}", board.name);
+            assert_eq!(by_name(board.name), Some(board));
+        }
+        assert_eq!(by_name("no such board"), None);
+    }
+}

@@ -1,0 +1,74 @@
+//! The nearest hits of camera rays and nothing else, and the picture of them.
+
+use core_rt::bvh::Intersect;
+use core_rt::colour::Rgb888;
+use core_rt::kernel::{Kernel, NONE};
+use core_rt::profile::Profile;
+use core_rt::render::Tile;
+use core_rt::scene::Scene;
+use core_rt::stats::{RayKind, Stats};
+
+/// How the nearest hits are looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// One ray at a time.
+    Single,
+    /// A tile of rays at a time.
+    Tile,
+}
+
+/// Finds the nearest hits of a tile's camera rays, row by row. `hits` has one entry a pixel, and the stack is as deep as
+/// the scene's tree.
+pub fn find<P: Profile>(
+    scene: &Scene<'_, P>,
+    tile: Tile,
+    way: Way,
+    hits: &mut [u32],
+    stack: &mut core_rt::bvh::Stack<P::Kernel>,
+    stats: &mut impl Stats,
+) {
+    let rows = tile.y..tile.y.saturating_add(tile.height);
+    let columns = tile.x..tile.x.saturating_add(tile.width);
+    let rays =
+        rows.flat_map(move |y| columns.clone().map(move |x| <P::Kernel as Kernel>::primary(&scene.camera, x, y)));
+    match way {
+        Way::Tile => scene.bvh.closest_tile(rays, hits, stack, stats),
+        Way::Single => {
+            for (hit, ray) in hits.iter_mut().zip(rays) {
+                stats.ray(RayKind::Primary);
+                *hit = ray.map_or(NONE, |ray| scene.bvh.closest(&ray, stack, stats));
+            }
+        }
+    }
+}
+
+/// Paints hits by their triangles' numbers in the file, which do not depend on the kernel; black for none.
+pub fn paint<P: Profile>(scene: &Scene<'_, P>, hits: &[u32], pixels: &mut [Rgb888]) {
+    for (pixel, &hit) in pixels.iter_mut().zip(hits) {
+        *pixel = if hit == NONE { [0; 3] } else { colour(scene.bvh.ids.get(hit)) };
+    }
+}
+
+/// A colour that tells neighbours apart and is never black: the number's multiple of 2^24 / golden ratio, which is odd,
+/// so that the first 2^24 numbers have as many colours.
+#[must_use]
+pub fn colour(id: u32) -> Rgb888 {
+    let [r, g, b, _] = id.wrapping_add(1).wrapping_mul(0x009e_3779).to_le_bytes();
+    [r, g, b]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_are_all_different_and_not_black() {
+        let mut seen = vec![false; 1 << 24];
+        for id in 0..(1 << 24) - 1 {
+            let [r, g, b] = colour(id);
+            let place = u32::from_le_bytes([r, g, b, 0]) as usize;
+            assert!(place != 0 && !seen[place], "{id}");
+            seen[place] = true;
+        }
+    }
+}

@@ -1,0 +1,187 @@
+//! What the firmware of every board does: check the blob in its place, render it tile by tile, send, report.
+
+use core_rt::blob::{BlobError, PREFIX_SIZE, Prefix};
+use core_rt::bvh::Waiting;
+use core_rt::colour::Rgb888;
+use core_rt::kernel::Kernel;
+use core_rt::profile::Profile;
+use core_rt::render::{Tile, Workspace, render_tile};
+use core_rt::scene::Scene;
+use core_rt::stats::{Counts, NoStats, Stats};
+use semihosting::io::Error;
+use zerocopy::{FromBytes, IntoBytes};
+
+use crate::board::{Board, Region};
+use crate::frame::{Begin, Report, TileHead};
+use crate::hits::{self, Way};
+use crate::refusal::Refusal;
+use crate::status::Status;
+use crate::wire::Wire;
+use crate::{stack, window};
+
+/// Pixels a side of a tile.
+pub const TILE: u16 = 16;
+
+const PIXELS: usize = TILE as usize * TILE as usize;
+
+/// What is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Draw {
+    /// The picture.
+    Picture,
+    /// The nearest hits alone.
+    Hits(Way),
+}
+
+/// What a firmware was built for; `build` emits the one there is.
+pub trait Firmware {
+    /// What the scene may need.
+    type Profile: Profile;
+    /// Where everything lies.
+    const BOARD: &'static Board;
+    /// What is drawn.
+    const DRAW: Draw;
+    /// Whether work is counted; it then takes longer.
+    const COUNT: bool;
+}
+
+/// All that rendering stores, for trees of at most `DEPTH` levels.
+#[derive(Debug)]
+pub struct Storage<K: Kernel, const DEPTH: usize> {
+    stack: heapless::Vec<Waiting<K>, DEPTH>,
+    hits: [u32; PIXELS],
+    pixels: [Rgb888; PIXELS],
+}
+
+impl<K: Kernel, const DEPTH: usize> Storage<K, DEPTH> {
+    /// Nothing yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { stack: heapless::Vec::new(), hits: [0; PIXELS], pixels: [[0; 3]; PIXELS] }
+    }
+}
+
+impl<K: Kernel, const DEPTH: usize> Default for Storage<K, DEPTH> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Renders the blob in its place; the status to end with. The stack was painted.
+pub fn run<F: Firmware, const DEPTH: usize>(storage: &mut Storage<<F::Profile as Profile>::Kernel, DEPTH>) -> Status {
+    let Storage { stack, hits, pixels } = storage;
+    let mut workspace = Workspace { stack, hits, pixels };
+    if F::COUNT {
+        let mut counts = Counts::default();
+        rendered::<F, _>(&mut workspace, &mut counts, |counts| *counts)
+    } else {
+        rendered::<F, _>(&mut workspace, &mut NoStats, |_| Counts::default())
+    }
+}
+
+type KernelOf<F> = <<F as Firmware>::Profile as Profile>::Kernel;
+
+fn rendered<F: Firmware, S: Stats>(
+    workspace: &mut Workspace<'_, KernelOf<F>>,
+    stats: &mut S,
+    counts: fn(&S) -> Counts,
+) -> Status {
+    let blob = blob(F::BOARD.blob);
+    defmt::info!("{=str}: a blob of {=usize} bytes for {=str}", F::BOARD.name, blob.len(), KernelOf::<F>::NAME);
+    // Matched by reference: a scene is not small, and the stack would have it twice.
+    let scene = checked::<F::Profile>(blob);
+    let scene = match &scene {
+        Ok(scene) => scene,
+        Err(error) => {
+            defmt::error!("the blob was refused: {}", Refusal(error));
+            return Status::Refused;
+        }
+    };
+    let capacity = workspace.stack.capacity();
+    if capacity < usize::from(scene.header.depth) {
+        defmt::error!("the tree has {=u8} levels, and this firmware is for {=usize}", scene.header.depth, capacity);
+        return Status::Storage;
+    }
+    match drawn::<F, S>(scene, workspace, stats, counts) {
+        Ok(()) => Status::Done,
+        Err(_) => {
+            defmt::error!("the host does not take what is sent");
+            Status::Wire
+        }
+    }
+}
+
+/// Apart, so that the stack that the check takes is free again for the drawing.
+#[inline(never)]
+fn checked<P: Profile>(blob: &[u8]) -> Result<Scene<'_, P>, BlobError> {
+    Scene::new_checked(blob)
+}
+
+/// Draws every tile and sends it.
+fn drawn<F: Firmware, S: Stats>(
+    scene: &Scene<'_, F::Profile>,
+    workspace: &mut Workspace<'_, KernelOf<F>>,
+    stats: &mut S,
+    counts: fn(&S) -> Counts,
+) -> Result<(), Error> {
+    let [width, height] = scene.header.size;
+    let mut wire = Wire::open()?;
+    wire.send(Begin::KIND, &[Begin { width, height }.as_bytes()])?;
+    for tile in Tile::of(scene.header.size, [TILE; 2]) {
+        let pixels = draw::<F>(scene, tile, workspace, stats);
+        let head = TileHead { x: tile.x, y: tile.y, width: tile.width, height: tile.height };
+        wire.send(TileHead::KIND, &[head.as_bytes(), pixels.as_flattened()])?;
+    }
+    let counts = counts(stats);
+    // SAFETY: the stack's memory is what the board says, by the linker script that is made from it.
+    let stack_bytes = unsafe { stack::deepest(F::BOARD.stack) };
+    let report = Report {
+        stack_bytes,
+        counted: F::COUNT.into(),
+        primary_rays: counts.primary_rays,
+        shadow_rays: counts.shadow_rays,
+        box_tests: counts.box_tests,
+        triangle_tests: counts.triangle_tests,
+    };
+    defmt::info!("{=u16}x{=u16} pixels, {=u32} bytes of stack", width, height, stack_bytes);
+    wire.send(Report::KIND, &[report.as_bytes()])
+}
+
+/// Draws one tile. What is between the marks is what is measured.
+#[inline(never)]
+fn draw<'w, F: Firmware>(
+    scene: &Scene<'_, F::Profile>,
+    tile: Tile,
+    workspace: &'w mut Workspace<'_, KernelOf<F>>,
+    stats: &mut impl Stats,
+) -> &'w [Rgb888] {
+    let count = tile.pixels().min(PIXELS);
+    window::intray_window_begin();
+    match F::DRAW {
+        Draw::Picture => {
+            // The storage has room for the scene and for every tile: there is no error left.
+            let _ = render_tile(scene, tile, workspace, stats);
+        }
+        Draw::Hits(way) => {
+            let hits = workspace.hits.get_mut(..count).unwrap_or_default();
+            hits::find(scene, tile, way, hits, workspace.stack, stats);
+        }
+    }
+    window::intray_window_end();
+    if let Draw::Hits(_) = F::DRAW {
+        hits::paint(scene, workspace.hits, workspace.pixels);
+    }
+    workspace.pixels.get(..count).unwrap_or_default()
+}
+
+/// The blob in its place, as long as it says, or as long as there is room.
+fn blob(place: Region) -> &'static [u8] {
+    let first = core::ptr::without_provenance::<u8>(place.start as usize);
+    // SAFETY: flash, which is mapped whether or not anything was put into it, and which nothing writes to.
+    let room = unsafe { core::slice::from_raw_parts(first, place.length as usize) };
+    let length = match Prefix::read_from_prefix(room) {
+        Ok((prefix, _)) => (prefix.total_size as usize).clamp(PREFIX_SIZE, room.len()),
+        Err(_) => PREFIX_SIZE,
+    };
+    room.get(..length).unwrap_or_default()
+}

@@ -1,0 +1,109 @@
+//! Shading in floats: points, unit vectors and barycentrics are plain numbers.
+
+use core::marker::PhantomData;
+
+use core_rt::num::Triple;
+use core_rt::space::Space;
+
+use crate::colour::RgbF;
+use crate::real::Real;
+use crate::vector::{add, dot, normalise, scale, sub};
+
+/// The space of float kernels.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct FloatSpace<F>(PhantomData<F>);
+
+impl<F: Real> Space for FloatSpace<F> {
+    type Point = Triple<F>;
+    type Unit = Triple<F>;
+    type Fraction = F;
+    type Colour = RgbF<F>;
+    type Normal = Triple<F>;
+
+    #[inline]
+    fn unit(normal: &Triple<F>) -> Triple<F> {
+        *normal
+    }
+
+    fn is_unit(normal: &Triple<F>) -> bool {
+        // Within 2^-7 of 1 is the square of a length within 2^-8. What is not a number is not within anything.
+        let error = dot(*normal, *normal) - F::ONE;
+        let bound = F::ONE.ldexp(-7);
+        -bound < error && error < bound
+    }
+
+    fn normal(unit_q30: Triple<i32>) -> Triple<F> {
+        Self::unit_from_q30(unit_q30)
+    }
+
+    #[inline]
+    fn unit_from_q30(unit_q30: Triple<i32>) -> Triple<F> {
+        scale(unit_q30.map(F::from_i32), F::ONE / F::from_i32(1 << 30))
+    }
+
+    #[inline]
+    fn point(grid: Triple<i32>) -> Triple<F> {
+        grid.map(F::from_i32)
+    }
+
+    #[inline]
+    fn towards(from: Triple<F>, to: Triple<F>) -> Option<Triple<F>> {
+        normalise(sub(to, from))
+    }
+
+    #[inline]
+    fn interpolate(normals: [Triple<F>; 3], u: F, v: F) -> Option<Triple<F>> {
+        let [n0, n1, n2] = normals;
+        normalise(add(add(scale(n0, F::ONE - u - v), scale(n1, u)), scale(n2, v)))
+    }
+
+    #[inline]
+    fn negate(unit: Triple<F>) -> Triple<F> {
+        unit.map(|c| -c)
+    }
+
+    #[inline]
+    fn aligned(a: Triple<F>, b: Triple<F>) -> bool {
+        dot(a, b) >= F::ZERO
+    }
+
+    #[inline]
+    fn cosine(a: Triple<F>, b: Triple<F>) -> Option<F> {
+        let cosine = dot(a, b);
+        // Unit vectors are units but for rounding.
+        (cosine > F::ZERO).then_some(if cosine < F::ONE { cosine } else { F::ONE })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    type Space32 = FloatSpace<f32>;
+
+    #[test]
+    fn units_are_told_from_what_is_none() {
+        assert!(Space32::is_unit(&[0.6, 0.0, -0.8]));
+        assert!(Space32::is_unit(&[1.003, 0.0, 0.0]));
+        for bad in [[1.005, 0.0, 0.0], [0.99, 0.0, 0.0], [0.0; 3], [f32::NAN, 0.0, 1.0], [f32::INFINITY, 0.0, 0.0]] {
+            assert!(!Space32::is_unit(&bad), "{bad:?}");
+        }
+        let q30 = [644_245_094, 0, -858_993_459]; // 0.6, 0, -0.8
+        assert_eq!(Space32::normal(q30), [0.6, 0.0, -0.8]);
+    }
+
+    #[test]
+    fn cosines_are_positive_and_at_most_1() {
+        assert_eq!(Space32::cosine([1.001, 0.0, 0.0], [1.0, 0.0, 0.0]), Some(1.0));
+        assert_eq!(Space32::cosine([0.6, 0.8, 0.0], [1.0, 0.0, 0.0]), Some(0.6));
+        assert_eq!(Space32::cosine([0.0, 1.0, 0.0], [1.0, 0.0, 0.0]), None);
+        assert!(Space32::aligned([0.0, 1.0, 0.0], [1.0, 0.0, 0.0]));
+    }
+
+    #[test]
+    fn normals_between_corners_and_none_where_they_cancel() {
+        let normals = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]];
+        assert_eq!(Space32::interpolate(normals, 1.0, 0.0), Some([0.0, 1.0, 0.0]));
+        assert_eq!(Space32::interpolate(normals, 0.0, 0.5), None);
+    }
+}

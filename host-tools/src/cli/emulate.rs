@@ -1,0 +1,248 @@
+//! `intray emulate`: a scene by a board's firmware, in QEMU.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::builder::PossibleValuesParser;
+use core_rt::blob::Header;
+use firmware_rt::board::{self, BOARDS, Board};
+use firmware_rt::build::Traits;
+use firmware_rt::hits::Way;
+use indicatif::ProgressBar;
+use serde::Serialize;
+
+use super::failure::{Failure, warn};
+use super::input::{Scene, SceneArguments};
+use super::{output, progress};
+use crate::emulate::counter::{Counter, Counts};
+use crate::emulate::elf::Elf;
+use crate::emulate::firmware::{self, Wanted};
+use crate::emulate::machine::Machine;
+use crate::emulate::{EmulateError, Observer, Outcome, Run, room};
+use crate::engine::Sizes;
+use crate::files;
+
+/// Render a scene by a board's firmware, in QEMU
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+
+    /// The board
+    #[arg(long, value_parser = PossibleValuesParser::new(BOARDS.map(|board| board.name)))]
+    board: String,
+
+    /// Where the picture goes
+    #[arg(short, value_name = "PNG")]
+    output: PathBuf,
+
+    /// Find the nearest hits of camera rays and nothing else, and show the triangles' numbers as colours
+    #[arg(long, value_enum)]
+    hits: Option<Hits>,
+
+    /// Stop QEMU after so long
+    #[arg(long, value_name = "SECONDS", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..))]
+    timeout: u64,
+
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// How the nearest hits are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, clap::ValueEnum)]
+#[serde(rename_all = "lowercase")]
+enum Hits {
+    /// One ray at a time
+    Single,
+    /// A tile of rays at a time
+    Tile,
+}
+
+impl From<Hits> for Way {
+    fn from(hits: Hits) -> Self {
+        match hits {
+            Hits::Single => Self::Single,
+            Hits::Tile => Self::Tile,
+        }
+    }
+}
+
+/// The answer.
+#[derive(Debug, Serialize)]
+struct Report {
+    board: &'static str,
+    chip: &'static str,
+    kernel: &'static str,
+    hits: Option<Hits>,
+    width: u32,
+    height: u32,
+    /// CRC-32 of the RGB888 bytes.
+    image_crc32: String,
+    rays: u64,
+    primary_rays: u64,
+    shadow_rays: u64,
+    box_tests: u64,
+    triangle_tests: u64,
+    /// From the first camera ray of each tile to its last pixel; none where they cannot be counted.
+    instructions: Option<u64>,
+    instructions_per_ray: Option<f64>,
+    /// Checking the blob, sending, start and end.
+    instructions_apart: Option<u64>,
+    /// Of the counted instructions, by the name of the model.
+    cycles: Option<BTreeMap<String, u64>>,
+    /// Code and constants.
+    text_bytes: u64,
+    /// The blob.
+    scene_bytes: u64,
+    /// Variables, and the stack at its deepest.
+    ram_bytes: u64,
+    stack_bytes: u64,
+    elf: PathBuf,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    files::check_writable(&arguments.output)?;
+    let board = board::by_name(&arguments.board).ok_or_else(|| Failure::input("no such board"))?;
+    let scene = arguments.scene.load_for_chip()?;
+    let (header, sizes) = scene.engine.inspect(scene.blob.bytes())?;
+    let failure = |error: EmulateError| match error {
+        error if error.is_input() => Failure::input(format!("{}: {error}", arguments.scene.scene.display())),
+        error => Failure::check(error.to_string()),
+    };
+    let bytes = scene.blob.bytes();
+    firmware::check(board, &Traits::new(scene.engine.id(), &header)).map_err(failure)?;
+    room(board, bytes.len() as u64, || help(board, &scene, &header, &sizes)).map_err(failure)?;
+
+    let machine = Machine::of(board);
+    machine.version().map_err(failure)?;
+    let hits = arguments.hits.map(Way::from);
+    let wanted = Wanted { board, blob: bytes, hits, count: false };
+    let spinner = progress::spinner("building the firmware");
+    let elf = wanted.provide().map_err(failure)?;
+    let counting = Wanted { count: true, ..wanted }.provide().map_err(failure)?;
+    let counter = Counter::provide(&machine);
+    spinner.finish_and_clear();
+    let counter = counter.inspect_err(|reason| warn(format_args!("instructions are not counted: {reason}"))).ok();
+
+    let limit = Duration::from_secs(arguments.timeout);
+    let run = |elf, counter, what, is_logged| {
+        let bar = progress::bar(what, header.size.map(u64::from).iter().product());
+        let outcome =
+            Run { board, elf, blob: Some(bytes), counter, limit }.perform(&mut Shown { bar: &bar, is_logged });
+        bar.finish_and_clear();
+        outcome.map_err(failure)
+    };
+    let outcome = run(&elf, counter.as_ref(), "rendering", true)?;
+    // Counting rays and tests takes instructions, so it is done by itself.
+    let counted = run(&counting, None, "counting", false)?;
+    let (first, second) = (outcome.picture.crc32(), counted.picture.crc32());
+    if first != second {
+        return Err(failure(EmulateError::Unequal { board: board.name, first, second }));
+    }
+    outcome.picture.write_png(&arguments.output)?;
+    let report = report(arguments, board, &scene, &elf, outcome, &counted);
+    if arguments.json { output::json(&report) } else { output::line(&text(arguments, &report)) }
+}
+
+/// Shows a run on the terminal.
+pub(super) struct Shown<'a> {
+    pub(super) bar: &'a ProgressBar,
+    pub(super) is_logged: bool,
+}
+
+impl Observer for Shown<'_> {
+    fn log(&mut self, line: &str) {
+        if self.is_logged {
+            self.bar.suspend(|| super::failure::note(line));
+        }
+    }
+
+    fn pixels(&mut self, count: u64) {
+        self.bar.inc(count);
+    }
+}
+
+fn report(
+    arguments: &Arguments,
+    board: &Board,
+    scene: &Scene,
+    elf: &Elf,
+    outcome: Outcome,
+    counted: &Outcome,
+) -> Report {
+    let Outcome { picture, report, counts } = outcome;
+    let work = counted.report;
+    let rays = work.primary_rays + work.shadow_rays;
+    let instructions = counts.as_ref().map(|counts| counts.instructions);
+    let apart = |counts: &Counts| counts.run.instructions.saturating_sub(counts.instructions);
+    Report {
+        board: board.name,
+        chip: board.chip,
+        kernel: scene.engine.name(),
+        hits: arguments.hits,
+        width: picture.width(),
+        height: picture.height(),
+        image_crc32: format!("{:08x}", picture.crc32()),
+        rays,
+        primary_rays: work.primary_rays,
+        shadow_rays: work.shadow_rays,
+        box_tests: work.box_tests,
+        triangle_tests: work.triangle_tests,
+        instructions,
+        instructions_per_ray: instructions.map(|instructions| instructions as f64 / rays.max(1) as f64),
+        instructions_apart: counts.as_ref().map(apart),
+        cycles: counts.map(|counts| counts.cycles),
+        text_bytes: elf.text_bytes,
+        scene_bytes: scene.blob.bytes().len() as u64,
+        ram_bytes: elf.static_bytes + u64::from(report.stack_bytes),
+        stack_bytes: report.stack_bytes.into(),
+        elf: elf.path().into(),
+    }
+}
+
+/// The answer for a person.
+fn text(arguments: &Arguments, report: &Report) -> String {
+    let per_ray = |count: u64| count as f64 / report.rays.max(1) as f64;
+    let instructions = match (report.instructions, report.instructions_per_ray) {
+        (Some(all), Some(per_ray)) => format!("{all} instructions, {per_ray:.0} a ray"),
+        _ => "instructions not counted".into(),
+    };
+    format!(
+        "{}: {}x{} by {} on {} ({}), {} rays: {instructions}, {:.1} box and {:.1} triangle tests a ray, CRC-32 {}\n\
+         flash {} bytes of code and {} of scene; RAM {} bytes, {} of them stack\n\
+         {}",
+        arguments.output.display(),
+        report.width,
+        report.height,
+        report.kernel,
+        report.board,
+        report.chip,
+        report.rays,
+        per_ray(report.box_tests),
+        per_ray(report.triangle_tests),
+        report.image_crc32,
+        report.text_bytes,
+        report.scene_bytes,
+        report.ram_bytes,
+        report.stack_bytes,
+        report.elf.display(),
+    )
+}
+
+/// What would make a blob fit.
+fn help(board: &Board, scene: &Scene, header: &Header, sizes: &Sizes) -> String {
+    let triangles = u64::from(header.counts.triangles);
+    let bytes = scene.blob.bytes().len() as u64;
+    // In proportion, a fiftieth less for what does not shrink with the triangles.
+    let fitting = triangles * u64::from(board.blob.length) / bytes * 49 / 50;
+    let mut help = vec![format!("fewer triangles (`intray prep --triangles {fitting}` instead of {triangles})")];
+    if scene.engine.name() != "exact14" {
+        help.push("the kernel exact14, whose records are the smallest".into());
+    }
+    if sizes.normals > 0 {
+        help.push(format!("no smooth normals, which take {} bytes", sizes.normals));
+    }
+    help.join("; ")
+}

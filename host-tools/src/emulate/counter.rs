@@ -1,0 +1,79 @@
+//! Exact instruction counts, by a plugin that QEMU asks about every block of code: `tests/qemu-plugin`.
+
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::EmulateError;
+use super::elf::Elf;
+use super::machine::{Machine, doubled};
+use super::repository::Repository;
+use crate::files;
+
+/// The version of QEMU that has the plugin's API.
+const QEMU: u32 = 10;
+
+/// The plugin, built.
+#[derive(Clone, Debug)]
+pub struct Counter(PathBuf);
+
+/// What was counted.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub struct Counts {
+    /// Instructions between the marks.
+    pub instructions: u64,
+    /// Cycles between the marks, by the name of the model.
+    pub cycles: BTreeMap<String, u64>,
+    /// Marks without their partner, which there should not be.
+    pub unpaired: u64,
+    /// From reset to exit.
+    pub run: Totals,
+}
+
+/// Instructions of a part of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub struct Totals {
+    /// How many.
+    pub instructions: u64,
+}
+
+impl Counter {
+    /// The plugin, built if need be.
+    ///
+    /// # Errors
+    /// Why instructions cannot be counted here, for a person; everything else still works.
+    pub fn provide(machine: &Machine) -> Result<Self, String> {
+        let version = machine.version().map_err(|error| error.to_string())?;
+        if version < QEMU {
+            return Err(format!("{} is of version {version}, and the counter needs {QEMU}", machine.program()));
+        }
+        let repository = Repository::find().map_err(|error| error.to_string())?;
+        repository.cargo(&["build", "--release", "--package", "qemu-plugin"], &[])?;
+        let name = format!("{}qemu_plugin{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+        let path = repository.target().join("release").join(name);
+        if path.is_file() { Ok(Self(path)) } else { Err(format!("{}: not built", path.display())) }
+    }
+
+    /// What QEMU is to be told, for the counts of a firmware to be written to `out`.
+    pub(super) fn argument(&self, elf: &Elf, out: &Path) -> Result<OsString, EmulateError> {
+        let [begin, end] = elf.window.ok_or_else(|| elf.unfit("no marks between which to count".into()))?;
+        let mut argument = doubled(&self.0);
+        argument.push(format!(",begin={begin:#x},end={end:#x},out="));
+        argument.push(doubled(out));
+        Ok(argument)
+    }
+}
+
+impl Counts {
+    /// What the plugin has written.
+    pub(super) fn read(path: &Path) -> Result<Self, EmulateError> {
+        let counts: Self =
+            serde_json::from_slice(&files::read(path)?).map_err(|error| EmulateError::Counter(error.to_string()))?;
+        match counts.unpaired {
+            0 => Ok(counts),
+            unpaired => Err(EmulateError::Counter(format!("{unpaired} marks without their partner"))),
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! Firmware for a blob: built by cargo, or as it was built before.
+//!
+//! One ELF per board, kernel and profile serves every scene that it suffices for, so it is kept under a name that says
+//! these. Beside it stands what it was made from, the compiler and the sources, and it is made anew where that changed.
+
+use std::ffi::OsString;
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use firmware_rt::board::Board;
+use firmware_rt::build::{BLOB_VARIABLE, COUNT_VARIABLE, HITS_VARIABLE, Traits};
+use firmware_rt::hits::Way;
+
+use super::EmulateError;
+use super::elf::Elf;
+use super::repository::Repository;
+use crate::engine::{self, ENGINES};
+use crate::files;
+
+/// What firmware is for.
+#[derive(Clone, Copy, Debug)]
+pub struct Wanted<'a> {
+    /// The board.
+    pub board: &'static Board,
+    /// The blob that its profile comes from.
+    pub blob: &'a [u8],
+    /// The nearest hits alone, instead of the picture.
+    pub hits: Option<Way>,
+    /// Whether it counts rays and tests.
+    pub count: bool,
+}
+
+/// Checks that firmware can be built here: that a kernel has one, that the sources and the compiler's library are there.
+///
+/// # Errors
+/// What is missing.
+pub fn check(board: &'static Board, traits: &Traits) -> Result<(), EmulateError> {
+    Repository::find()?;
+    if traits.kernel_path().is_none() {
+        let has_firmware = |id| Traits { kernel: id, ..*traits }.kernel_path().is_some();
+        let known: Vec<&str> =
+            ENGINES.iter().filter(|engine| has_firmware(engine.id())).map(|engine| engine.name()).collect();
+        let kernel = engine::by_id(traits.kernel).map_or("of this blob", |engine| engine.name());
+        return Err(EmulateError::NoFirmware { kernel, known: known.join(", ") });
+    }
+    if has_library(board.target) { Ok(()) } else { Err(EmulateError::NoTarget { target: board.target }) }
+}
+
+impl Wanted<'_> {
+    /// The firmware, built if need be.
+    ///
+    /// # Errors
+    /// Where it cannot be built.
+    pub fn provide(&self) -> Result<Elf, EmulateError> {
+        let damaged = EmulateError::Damaged("the blob has no header");
+        let traits = Traits::of(self.blob).ok_or(damaged)?;
+        check(self.board, &traits)?;
+        let repository = Repository::find()?;
+        let folder = repository.target().join("firmware");
+        fs::create_dir_all(&folder).map_err(EmulateError::folder)?;
+        let path = folder.join(format!("{}.elf", self.name(&traits)));
+        let origin_path = path.with_extension("origin");
+        // One at a time: cargo has one place for all profiles of a package.
+        let lock = File::create(folder.join("lock")).and_then(|file| file.lock().map(|()| file));
+        let _lock = lock.map_err(EmulateError::folder)?;
+        let origin = origin(repository.root(), self.board.package).map_err(EmulateError::folder)?;
+        if !path.is_file() || !fs::read_to_string(&origin_path).is_ok_and(|made_from| made_from == origin) {
+            self.build(&repository, &path)?;
+            files::write_atomically(&origin_path, origin.as_bytes())?;
+        }
+        Elf::read(&path, self.board)
+    }
+
+    /// Board, kernel and profile.
+    fn name(&self, traits: &Traits) -> String {
+        let kernel = engine::by_id(traits.kernel).map_or("unknown", |engine| engine.name());
+        let hits = match self.hits {
+            None => "",
+            Some(Way::Single) => "-single",
+            Some(Way::Tile) => "-tile",
+        };
+        let count = if self.count { "-count" } else { "" };
+        format!("{}-{kernel}-{:x}-{}{hits}{count}", self.board.name, traits.needs, traits.depth)
+    }
+
+    fn build(&self, repository: &Repository, path: &Path) -> Result<(), EmulateError> {
+        let Board { target, package, .. } = *self.board;
+        // A name that stays the same from build to build, so that cargo knows what it has.
+        let blob = path.with_extension("blob");
+        files::write_atomically(&blob, self.blob)?;
+        let hits = match self.hits {
+            None => "",
+            Some(Way::Single) => "single",
+            Some(Way::Tile) => "tile",
+        };
+        let variables: [(&str, OsString); 3] = [
+            (BLOB_VARIABLE, blob.clone().into()),
+            (HITS_VARIABLE, hits.into()),
+            (COUNT_VARIABLE, if self.count { "1" } else { "0" }.into()),
+        ];
+        let arguments = ["build", "--package", package, "--bin", package, "--target", target, "--profile", "firmware"];
+        repository
+            .cargo(&arguments, &variables)
+            .map_err(|output| EmulateError::Build { package: package.into(), output })?;
+        let built = repository.target().join(target).join("firmware").join(package);
+        files::write_atomically(path, &files::read(&built)?)?;
+        // Only the build needed it.
+        fs::remove_file(blob).map_err(EmulateError::folder)
+    }
+}
+
+/// Whether the compiler has a library for the target. Asks rustc and not rustup: there are other packagings of Rust.
+fn has_library(target: &str) -> bool {
+    let asked = Command::new("rustc")
+        .args(["--print", "target-libdir", "--target", target])
+        .stdin(Stdio::null())
+        .output()
+        .ok()
+        .filter(|output| output.status.success());
+    asked.is_some_and(|output| Path::new(String::from_utf8_lossy(&output.stdout).trim()).is_dir())
+}
+
+/// What firmware is made from: the compiler, and a checksum over the sources.
+fn origin(root: &Path, package: &str) -> io::Result<String> {
+    let mut paths = vec![root.join("Cargo.toml"), root.join("Cargo.lock"), root.join(".cargo/config.toml")];
+    for folder in ["core-rt", "float-rt", "firmware-rt", package] {
+        collect(&root.join(folder), &mut paths)?;
+    }
+    paths.sort();
+    let mut bytes = Vec::new();
+    for path in paths {
+        bytes.extend(path.strip_prefix(root).unwrap_or(&path).as_os_str().as_encoded_bytes());
+        bytes.extend(fs::read(&path)?);
+    }
+    let compiler = Command::new("rustc").args(["--version", "--verbose"]).stdin(Stdio::null()).output()?;
+    Ok(format!("{:08x}\n{}", core_rt::blob::crc32(&bytes), String::from_utf8_lossy(&compiler.stdout)))
+}
+
+/// The files in a folder and in those below it.
+fn collect(folder: &Path, paths: &mut Vec<PathBuf>) -> io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.is_dir() {
+            collect(&path, paths)?;
+        } else {
+            paths.push(path);
+        }
+    }
+    Ok(())
+}

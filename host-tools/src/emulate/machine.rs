@@ -1,0 +1,96 @@
+//! The boards as QEMU has them.
+
+use std::ffi::{OsStr, OsString};
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitStatus, Stdio};
+
+use firmware_rt::board::Board;
+use firmware_rt::status::Status;
+
+use super::EmulateError;
+
+/// QEMU loads no raw file that is larger than the machine's RAM: 16 KiB, wherever in the flash it is for.
+pub(super) const PIECE: usize = 1 << 14;
+
+/// A board in QEMU.
+#[derive(Clone, Copy, Debug)]
+pub struct Machine {
+    board: &'static str,
+    blob_address: u32,
+    program: &'static str,
+    arguments: &'static [&'static str],
+}
+
+impl Machine {
+    /// The machine of a board.
+    #[must_use]
+    pub fn of(board: &Board) -> Self {
+        let (program, arguments): (_, &[_]) = match board.target {
+            "thumbv6m-none-eabi" => ("qemu-system-arm", &["-M", "microbit"]),
+            // Revision B starts where the flash of the real board does.
+            _ => ("qemu-system-riscv32", &["-M", "sifive_e,revb=true", "-bios", "none"]),
+        };
+        Self { board: board.name, blob_address: board.blob.start, program, arguments }
+    }
+
+    /// The program.
+    #[must_use]
+    pub fn program(&self) -> &'static str {
+        self.program
+    }
+
+    /// The major version of QEMU.
+    ///
+    /// # Errors
+    /// Where it is not there.
+    pub fn version(&self) -> Result<u32, EmulateError> {
+        let output = Command::new(self.program).arg("--version").stdin(Stdio::null()).output();
+        let text = match output {
+            Ok(output) => String::from_utf8_lossy(&output.stdout).into_owned(),
+            Err(_) => return Err(EmulateError::NoQemu { program: self.program }),
+        };
+        let number = text.split_whitespace().skip_while(|&word| word != "version").nth(1);
+        let major = number.and_then(|number| number.split('.').next()?.parse().ok());
+        Ok(major.unwrap_or_default())
+    }
+
+    /// QEMU with firmware, and with the pieces of a blob in its place.
+    pub(super) fn command(&self, elf: &Path, pieces: &[PathBuf], plugin: Option<&OsStr>) -> Command {
+        let mut command = Command::new(self.program);
+        command.args(self.arguments);
+        command.args(["-nographic", "-monitor", "none", "-serial", "none"]);
+        // Without semihosting both machines would wait for ever at the first word to the host.
+        command.args(["-semihosting-config", "enable=on,target=native", "-kernel"]).arg(elf);
+        for (piece, address) in pieces.iter().zip((self.blob_address..).step_by(PIECE)) {
+            let mut device = OsString::from("loader,file=");
+            device.push(doubled(piece));
+            device.push(format!(",addr={address:#x},force-raw=on"));
+            command.arg("-device").arg(device);
+        }
+        if let Some(plugin) = plugin {
+            command.arg("-plugin").arg(plugin);
+        }
+        command
+    }
+
+    /// Whether the end was a good one.
+    pub(super) fn judge(&self, status: ExitStatus, complaints: &str) -> Result<(), EmulateError> {
+        match status.code().and_then(Status::from_code) {
+            Some(Status::Done) => Ok(()),
+            Some(status) => Err(EmulateError::Firmware { board: self.board, status }),
+            None => Err(EmulateError::Qemu {
+                program: self.program,
+                status: status.to_string(),
+                complaints: complaints.trim().to_owned(),
+            }),
+        }
+    }
+}
+
+/// A path as QEMU's option lists take it: a comma is doubled.
+pub(super) fn doubled(path: &Path) -> OsString {
+    match path.to_str() {
+        Some(text) => text.replace(',', ",,").into(),
+        None => path.into(),
+    }
+}

@@ -1,0 +1,308 @@
+//! Firmware in QEMU: the picture is the host's, bit for bit, and whatever goes wrong is said and ends.
+//!
+//! Boards for which QEMU or the compiler's library is absent are skipped, with a line that says so.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Duration;
+
+use core_rt::exact::Exact14;
+use core_rt::kernel::Kernel;
+use core_rt::profile::Full;
+use core_rt::render::Tile;
+use core_rt::scene::{MAX_DEPTH, Scene};
+use core_rt::stats::Counts;
+use firmware_rt::board::{BOARDS, Board, HIFIVE1, MICROBIT};
+use firmware_rt::build::{DEFAULT_BLOB, Traits};
+use firmware_rt::hits::{self, Way};
+use firmware_rt::status::Status;
+use host_tools::builtin;
+use host_tools::emulate::counter::Counter;
+use host_tools::emulate::elf::Elf;
+use host_tools::emulate::firmware::{self, Wanted};
+use host_tools::emulate::machine::Machine;
+use host_tools::emulate::{EmulateError, Observer, Outcome, Run, room};
+use host_tools::engine;
+use host_tools::import::{Embedded, load_from};
+use host_tools::model::Model;
+use host_tools::picture::Picture;
+use host_tools::prepare::Options;
+use host_tools::render::Rendered;
+use tests::blobs;
+
+const LIMIT: Duration = Duration::from_secs(120);
+
+/// Keeps the log.
+#[derive(Default)]
+struct Heard {
+    log: Vec<String>,
+    pixels: u64,
+}
+
+impl Observer for Heard {
+    fn log(&mut self, line: &str) {
+        self.log.push(line.into());
+    }
+
+    fn pixels(&mut self, count: u64) {
+        self.pixels += count;
+    }
+}
+
+/// The boards that can be emulated here.
+fn boards() -> impl Iterator<Item = &'static Board> {
+    BOARDS.into_iter().filter(|board| {
+        let traits = Traits { kernel: Exact14::ID, needs: 0, depth: 16 };
+        match Machine::of(board).version().and_then(|_| firmware::check(board, &traits)) {
+            Ok(()) => true,
+            Err(error) => {
+                println!("skipped {}: {error}", board.name);
+                false
+            }
+        }
+    })
+}
+
+/// The built-in scene, small: smooth and flat triangles, a lamp, ambient light.
+fn built_in() -> Model {
+    let mut model = load_from(&Embedded(builtin::FILES), "scene.toml").unwrap().model;
+    model.render.size = [32, 24];
+    model
+}
+
+fn prepared(model: &Model, kernel: &str) -> Vec<u8> {
+    let engine = engine::by_name(kernel).unwrap();
+    engine.prepare(model, &Options::default()).unwrap().blob.bytes().to_vec()
+}
+
+fn host(blob: &[u8], kernel: &str) -> Rendered {
+    let blob = host_tools::prepare::Blob::from_bytes(blob);
+    engine::by_name(kernel).unwrap().render(blob.bytes(), [8, 8], &|_| ()).unwrap()
+}
+
+fn wanted<'a>(board: &'static Board, blob: &'a [u8]) -> Wanted<'a> {
+    Wanted { board, blob, hits: None, count: false }
+}
+
+fn run(elf: &Elf, board: &Board, blob: &[u8], counter: Option<&Counter>) -> Result<(Outcome, Heard), EmulateError> {
+    let mut heard = Heard::default();
+    let outcome = Run { board, elf, blob: Some(blob), counter, limit: LIMIT }.perform(&mut heard)?;
+    Ok((outcome, heard))
+}
+
+#[test]
+fn pictures_are_the_hosts() {
+    for board in boards() {
+        for kernel in ["exact14", "exact29"] {
+            let five_triangles = match kernel {
+                "exact14" => blobs::sample::<Exact14>(false),
+                _ => blobs::sample::<core_rt::exact::Exact29>(false),
+            };
+            for blob in [prepared(&built_in(), kernel), five_triangles.bytes().to_vec()] {
+                let elf = wanted(board, &blob).provide().unwrap();
+                let (outcome, heard) = run(&elf, board, &blob, None).unwrap();
+                let picture = host(&blob, kernel).picture;
+                assert_eq!(outcome.picture, picture, "{} {kernel}", board.name);
+                assert_eq!(heard.pixels, picture.pixels().len() as u64);
+                assert!(
+                    heard.log[0].ends_with(&format!("a blob of {} bytes for {kernel}", blob.len())),
+                    "{:?}",
+                    heard.log
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn rays_and_tests_are_counted_as_on_the_host() {
+    for board in boards() {
+        let blob = prepared(&built_in(), "exact14");
+        let elf = Wanted { count: true, ..wanted(board, &blob) }.provide().unwrap();
+        let (outcome, _) = run(&elf, board, &blob, None).unwrap();
+        let Rendered { picture, counts } = host(&blob, "exact14");
+        let report = outcome.report;
+        let found = Counts {
+            box_tests: report.box_tests,
+            triangle_tests: report.triangle_tests,
+            primary_rays: report.primary_rays,
+            shadow_rays: report.shadow_rays,
+        };
+        assert_eq!((outcome.picture, found), (picture, counts), "{}", board.name);
+        assert!(counts.shadow_rays > 0 && counts.primary_rays == 32 * 24);
+    }
+}
+
+#[test]
+fn instructions_are_the_same_on_every_run() {
+    for board in boards() {
+        let counter = match Counter::provide(&Machine::of(board)) {
+            Ok(counter) => counter,
+            Err(reason) => {
+                println!("skipped {}: {reason}", board.name);
+                continue;
+            }
+        };
+        let counts = |model: &Model| {
+            let blob = prepared(model, "exact14");
+            let elf = wanted(board, &blob).provide().unwrap();
+            run(&elf, board, &blob, Some(&counter)).unwrap().0.counts.unwrap()
+        };
+        let once = counts(&built_in());
+        assert_eq!(once, counts(&built_in()), "{}", board.name);
+        // More pixels of the same firmware are more work, and within the marks.
+        let mut larger = built_in();
+        larger.render.size = [32, 32];
+        let more = counts(&larger);
+        assert!(more.instructions > once.instructions * 11 / 10, "{once:?} {more:?}");
+        assert!(more.instructions < more.run.instructions);
+    }
+}
+
+#[test]
+fn the_memory_that_a_small_chip_has_is_enough() {
+    for board in boards() {
+        let blob = blobs::sample::<Exact14>(false).bytes().to_vec();
+        let elf = wanted(board, &blob).provide().unwrap();
+        let (outcome, _) = run(&elf, board, &blob, None).unwrap();
+        let stack = u64::from(outcome.report.stack_bytes);
+        // The hits and the pixels of a 16x16 tile alone are 1792.
+        assert!((1792..2048).contains(&elf.static_bytes), "{}: {}", board.name, elf.static_bytes);
+        assert!(stack > 512 && elf.static_bytes + stack <= 4096, "{}: {} {stack}", board.name, elf.static_bytes);
+        assert!((10_000..u64::from(board.code.length)).contains(&elf.text_bytes), "{}", elf.text_bytes);
+        assert_eq!(elf.blob_bytes, 0);
+    }
+}
+
+/// The nearest hits by the host.
+fn hits_of(blob: &[u8]) -> Picture {
+    let blob = host_tools::prepare::Blob::from_bytes(blob);
+    let scene = Scene::<Full<Exact14>>::new_checked(blob.bytes()).unwrap();
+    let [width, height] = scene.header.size;
+    let tile = Tile { x: 0, y: 0, width, height };
+    let mut stack = heapless::Vec::<_, MAX_DEPTH>::new();
+    let mut hits = vec![0; tile.pixels()];
+    let mut picture = Picture::new(width.into(), height.into());
+    hits::find(&scene, tile, Way::Single, &mut hits, &mut stack, &mut Counts::default());
+    hits::paint(&scene, &hits, picture.pixels_mut());
+    picture
+}
+
+#[test]
+fn the_nearest_hits_are_the_hosts() {
+    for board in boards() {
+        let blob = prepared(&built_in(), "exact14");
+        let expected = hits_of(&blob);
+        assert_ne!(expected, host(&blob, "exact14").picture);
+        for way in [Way::Single, Way::Tile] {
+            let elf = Wanted { hits: Some(way), ..wanted(board, &blob) }.provide().unwrap();
+            let (outcome, _) = run(&elf, board, &blob, None).unwrap();
+            assert_eq!(outcome.picture, expected, "{} {way:?}", board.name);
+        }
+    }
+}
+
+#[test]
+fn a_damaged_blob_is_refused_by_the_chip() {
+    for board in boards() {
+        let blob = prepared(&built_in(), "exact14");
+        let elf = wanted(board, &blob).provide().unwrap();
+        let refusal = |blob: &[u8]| {
+            let mut heard = Heard::default();
+            let run = Run { board, elf: &elf, blob: Some(blob), counter: None, limit: LIMIT };
+            let error = run.perform(&mut heard).unwrap_err();
+            assert!(matches!(error, EmulateError::Firmware { status: Status::Refused, .. }), "{error}");
+            heard.log.last().unwrap().clone()
+        };
+        let mut flipped = blob.clone();
+        flipped[blob.len() / 2] ^= 1;
+        assert!(refusal(&flipped).contains("damaged, CRC-32"), "{}", refusal(&flipped));
+        assert!(refusal(&blob[8..]).contains("there is none"));
+        let mut model = built_in();
+        model.render.transfer = host_tools::model::Transfer::Linear;
+        assert!(refusal(&prepared(&model, "exact14")).contains("it needs linear output"));
+        assert!(refusal(&prepared(&built_in(), "exact29")).contains("for kernel"));
+        // Nothing but zeros in its place.
+        assert!(refusal(&[0; 64]).contains("there is none"));
+    }
+}
+
+/// Firmware that does what its first word of the blob asks for.
+fn misbehaving(board: &Board) -> Elf {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
+    let target = std::path::absolute(target).unwrap();
+    let name = board.package.replace("firmware", "misbehave");
+    let status = Command::new(env!("CARGO"))
+        .args(["build", "--quiet", "--profile", "firmware", "--package", board.package, "--bin", &name])
+        .args(["--target", board.target])
+        .env("CARGO_TARGET_DIR", &target)
+        .current_dir(&root)
+        .status();
+    assert!(status.unwrap().success());
+    Elf::read(&target.join(board.target).join("firmware").join(name), board).unwrap()
+}
+
+#[test]
+fn whatever_goes_wrong_is_said_and_ends() {
+    for board in boards() {
+        let elf = misbehaving(board);
+        let end = |asked: u32, limit: u64| {
+            let (mut heard, blob) = (Heard::default(), asked.to_le_bytes());
+            let limit = Duration::from_secs(limit);
+            let error =
+                Run { board, elf: &elf, blob: Some(&blob), counter: None, limit }.perform(&mut heard).unwrap_err();
+            assert_eq!(heard.log[0], format!("info  misbehaving: {asked}"));
+            (error, heard.log.last().unwrap().clone())
+        };
+        let (error, log) = end(1, 60);
+        assert!(matches!(error, EmulateError::Firmware { status: Status::StackOverflow, .. }), "{error}");
+        let place = format!("the stack has {:#010x} to {:#010x}", board.stack.start, board.stack.end());
+        assert!(error.to_string().contains("stack overflowed") && log.ends_with(&place), "{error} {log}");
+
+        let (error, _) = end(2, 2);
+        assert!(matches!(error, EmulateError::Timeout { .. }) && error.to_string().contains("after 2 s"), "{error}");
+
+        let (error, log) = end(3, 60);
+        assert!(matches!(error, EmulateError::Firmware { status: Status::Panicked, .. }), "{error}");
+        assert!(log.contains("panic at") && log.contains("misbehave.rs:"), "{log}");
+
+        let (error, log) = end(4, 60);
+        assert!(matches!(error, EmulateError::Firmware { status: Status::Fault, .. }), "{error}");
+        assert!(log.starts_with("error fault at 0x"), "{log}");
+
+        // An end without a picture is not a good one.
+        assert!(matches!(end(0, 60).0, EmulateError::Damaged(_)));
+    }
+}
+
+#[test]
+fn what_does_not_fit_is_said_before_anything_is_built() {
+    assert!(room(&MICROBIT, 196_608, || unreachable!()).is_ok());
+    let error = room(&MICROBIT, 200_000, || "fewer triangles".into()).unwrap_err().to_string();
+    assert_eq!(
+        error,
+        "the blob has 200000 bytes, and microbit has 196608 for it in its flash: 3392 too many. What would help: fewer \
+         triangles"
+    );
+    assert!(room(&HIFIVE1, 200_000, || unreachable!()).is_ok());
+}
+
+#[test]
+fn a_kernel_without_firmware_is_named() {
+    let traits = Traits::of(&prepared(&built_in(), "f64")).unwrap();
+    let error = firmware::check(&MICROBIT, &traits).unwrap_err().to_string();
+    assert!(error.contains("the kernel f64") && error.contains("exact14"), "{error}");
+}
+
+#[test]
+fn the_default_blob_is_what_the_built_in_scene_becomes() {
+    let mut model = built_in();
+    model.render.size = [160, 120];
+    let committed = std::fs::read(DEFAULT_BLOB).unwrap();
+    assert!(
+        committed == prepared(&model, "exact14"),
+        "firmware-rt/default.blob is stale: `cargo run --release -- prep scenes/demo/scene.toml --kernel exact14 \
+         --size 160x120 -o firmware-rt/default.blob`"
+    );
+}
