@@ -5,7 +5,7 @@
 //! manifold, are `alum`'s. What is kept beside the shape:
 //!
 //! - Outlines: open borders, borders between materials and creases between normals stay where they are as well as
-//!   the surface does, and no collapse leaves them (see [`Surface`]).
+//!   the surface does, and no collapse leaves them (`surface`).
 //! - Materials: each surviving triangle has its own.
 //! - Smooth normals: the normal of a vertex is the mean of those that were collapsed into it, by area. A triangle with
 //!   one normal for all corners is flat, before and after.
