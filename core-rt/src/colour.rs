@@ -22,7 +22,7 @@ pub enum Transfer {
     Linear,
 }
 
-/// Light of any strength from 2^-32 to 2^16: `mantissa * 2^exponent / 2^16`, linear RGB.
+/// Light of any strength from 2^-31 to nearly 2^15: `mantissa * 2^exponent / 2^16`, linear RGB.
 ///
 /// One exponent for three mantissas: a product with a cosine is one 32-bit multiplication.
 #[derive(
@@ -30,7 +30,7 @@ pub enum Transfer {
 )]
 #[repr(C)]
 pub struct Radiance {
-    /// Mantissas; the largest of them is at least 2^15 unless all are zero.
+    /// Mantissas; the host makes the largest of them at least 2^15 where the exponent allows it.
     pub mantissa: [u16; 3],
     /// In `EXPONENTS`.
     pub exponent: i16,

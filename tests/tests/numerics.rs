@@ -224,9 +224,11 @@ where
     }));
     let t_max: i64 = W::T_MAX.into();
     for magnitude in magnitudes {
-        let reciprocal = W::Reciprocal::new(W::Word::from_i64(magnitude).expect("in range"));
+        let word = |value: i64| W::Word::from_i64(value).expect("in range");
+        let (reciprocal, opposite) = (W::Reciprocal::new(word(magnitude)), W::Reciprocal::new(word(-magnitude)));
         for &delta in deltas {
-            let found: i64 = reciprocal.along(W::Word::from_i64(delta).expect("in range")).into();
+            let found: i64 = reciprocal.along(word(delta)).into();
+            assert_eq!(found, opposite.along(word(-delta)).into(), "{delta} / {magnitude}: the sign matters");
             let exact = (i128::from(delta) << W::T_BITS).div_euclid(magnitude.into());
             if delta < 0 {
                 assert!(found < 0, "{delta} / {magnitude}: {found}");

@@ -109,8 +109,6 @@ fn axis<W: Width>(ray: &Ray<W>, planes: &[[Plane<W>; 3]; 2], axis: usize) -> (W:
     let negative = ray.negative[axis];
     let (near, far): (W::Word, W::Word) =
         (planes[usize::from(negative)][axis].into(), planes[usize::from(!negative)][axis].into());
-    let origin = ray.origin[axis];
-    let (near, far) = if negative { (origin - near, origin - far) } else { (near - origin, far - origin) };
-    let reciprocal = ray.reciprocal[axis];
-    (reciprocal.along(near), reciprocal.along(far))
+    let (origin, reciprocal) = (ray.origin[axis], ray.reciprocal[axis]);
+    (reciprocal.along(near - origin), reciprocal.along(far - origin))
 }

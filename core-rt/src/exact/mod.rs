@@ -62,7 +62,7 @@ impl<W: Width> Kernel for Exact<W> {
         boxes::pack(boxes, children)
     }
 
-    #[inline]
+    #[inline(always)]
     fn children(node: &Self::Node) -> [u32; 2] {
         node.children()
     }
@@ -104,37 +104,37 @@ impl<W: Width> Kernel for Exact<W> {
         Ray::new(W::stand_off(from), W::direction(direction), skip)
     }
 
-    #[inline]
+    #[inline(always)]
     fn skip(ray: &Ray<W>) -> u32 {
         ray.skip
     }
 
-    #[inline]
+    #[inline(always)]
     fn reach(ray: &Ray<W>) -> W::Word {
         ray.reach_limit()
     }
 
-    #[inline]
+    #[inline(always)]
     fn enter(ray: &Ray<W>, node: &Self::Node, limit: W::Word) -> [Option<W::Word>; 2] {
         boxes::enter(ray, node, limit)
     }
 
-    #[inline]
+    #[inline(always)]
     fn intersect(ray: &Ray<W>, triangle: &Self::Triangle) -> Option<Depth<W>> {
         triangle::intersect(ray, triangle)
     }
 
-    #[inline]
+    #[inline(always)]
     fn limit(depth: &Depth<W>) -> W::Word {
         depth.t
     }
 
-    #[inline]
+    #[inline(always)]
     fn order(a: &Depth<W>, b: &Depth<W>) -> Ordering {
         triangle::order(a, b)
     }
 
-    #[inline]
+    #[inline(always)]
     fn within(entry: W::Word, limit: W::Word) -> bool {
         entry <= limit + W::SLACK
     }

@@ -60,7 +60,7 @@ impl<W: Width> Ray<W> {
                 origin,
                 direction,
                 negative: direction.map(|c| c < W::Word::ZERO),
-                reciprocal: direction.map(|c| W::Reciprocal::new(c.magnitude())),
+                reciprocal: direction.map(W::Reciprocal::new),
                 reach: None,
                 skip,
             },

@@ -29,15 +29,15 @@ pub trait Wide:
 impl Wide for i64 {}
 impl Wide for i128 {}
 
-/// The reciprocal of a direction's component, never above the true one.
+/// The reciprocal of a direction's component, of its sign, and never above the true one in magnitude.
 pub trait Reciprocal: Copy + Debug {
     /// The word of grid differences.
     type Word: Word;
-    /// From the magnitude of a component; 0 stands for "does not move along this axis".
-    fn new(magnitude: Self::Word) -> Self;
-    /// `delta / magnitude` in the unit of [`Width::SLACK`], rounded down; not above the true value where `delta` is
-    /// not negative, negative where `delta` is. Where the magnitude is 0 and `delta` at least 1, at least every
-    /// limit that a hit can have.
+    /// From a component; 0 stands for "does not move along this axis".
+    fn new(component: Self::Word) -> Self;
+    /// `delta / component` in the unit of [`Width::SLACK`], rounded down; not above the true value where that is not
+    /// negative, negative where that is. Where the component is 0 and `delta` at least 1, at least every limit that a
+    /// hit can have.
     fn along(self, delta: Self::Word) -> Self::Word;
 }
 

@@ -45,17 +45,18 @@ impl Reciprocal for Reciprocal14 {
     type Word = i32;
 
     #[inline]
-    fn new(magnitude: i32) -> Self {
-        if magnitude == 0 {
+    fn new(component: i32) -> Self {
+        if component == 0 {
             // delta >= 1 becomes 2^16 - 1, which no t in Q13 exceeds by more than SLACK.
             return Self { mantissa: 0xffff, shift: 0 };
         }
         // mantissa / 2^(16 + log2 d) * 2^13
-        let r = reciprocal(magnitude as u32);
-        Self { mantissa: r.mantissa as i32, shift: r.log2_d + 3 }
+        let r = reciprocal(component.unsigned_abs());
+        let mantissa = r.mantissa as i32;
+        Self { mantissa: if component < 0 { -mantissa } else { mantissa }, shift: r.log2_d + 3 }
     }
 
-    /// |delta| <= 2^15 and mantissa < 2^16: the product is below 2^31.
+    /// |delta| <= 2^15 and |mantissa| < 2^16: the product is below 2^31.
     #[inline(always)]
     fn along(self, delta: i32) -> i32 {
         (delta * self.mantissa) >> self.shift

@@ -31,7 +31,7 @@ pub struct Width29;
 /// grid is 1/2: along the normal at most sqrt(3) (1/2 + 2^-8 + 2^-27) < 0.88 < 1 - 2^-28.
 const STAND_OFF: i64 = 1;
 
-/// `floor(2^63 / magnitude)`.
+/// `floor(2^63 / |component|)`, with the component's sign.
 #[derive(Clone, Copy, Debug)]
 pub struct Reciprocal29(i64);
 
@@ -39,10 +39,11 @@ impl Reciprocal for Reciprocal29 {
     type Word = i64;
 
     #[inline]
-    fn new(magnitude: i64) -> Self {
+    fn new(component: i64) -> Self {
         // For 0 and 1 the largest word: low by one part in 2^63.
-        let quotient = (1u64 << 63) / (magnitude.unsigned_abs() | u64::from(magnitude == 0));
-        Self(quotient.min(i64::MAX as u64) as i64)
+        let quotient = (1u64 << 63) / (component.unsigned_abs() | u64::from(component == 0));
+        let magnitude = quotient.min(i64::MAX as u64) as i64;
+        Self(if component < 0 { -magnitude } else { magnitude })
     }
 
     /// t in Q31: delta 2^31 / |D| = delta 2^32 (2^63 / |D|) / 2^64. One multiplication that keeps its high half, and no
