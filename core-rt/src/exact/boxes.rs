@@ -2,10 +2,9 @@
 //!
 //! **No false miss.** Let a ray hit a triangle in the box at t, and let T be t in the unit of `T_BITS`. Along each
 //! axis the hit lies between the near and the far plane, so true entry <= T <= true exit. The computed entry is never
-//! above the true one ([`Reciprocal`]: a lower bound where the difference is positive, and clamped to 0 where it is
-//! negative, while T >= 0). The computed exit is below the true one by at most `SLACK` where that is not beyond
-//! `T_MAX` (each width's argument). So entry <= exit + SLACK, and entry <= limit + SLACK for every limit that is at
-//! most `SLACK` below T.
+//! above the true one where that is not negative, and negative where it is ([`Reciprocal`]), while T >= 0. The
+//! computed exit is below the true one by at most `SLACK` where that is not beyond `T_MAX` (each width's argument). So
+//! entry <= exit + SLACK, exit >= -SLACK, and entry <= limit + SLACK for every limit that is at most `SLACK` below T.
 //!
 //! High corners are stored plus one: a ray that does not move along an axis and lies in the box's last plane then has
 //! a difference of 1 to it, not 0.
@@ -98,17 +97,19 @@ pub(super) fn enter<W: Width>(ray: &Ray<W>, node: &W::Node, limit: W::Word) -> [
 #[inline(always)]
 fn slab<W: Width>(ray: &Ray<W>, planes: &[[Plane<W>; 3]; 2], limit: W::Word) -> Option<W::Word> {
     let [x, y, z] = [axis(ray, planes, 0), axis(ray, planes, 1), axis(ray, planes, 2)];
-    let entry = x.0.max(y.0).max(z.0).max(W::Word::ZERO);
-    let exit = x.1.min(y.1).min(z.1).min(limit);
-    (entry <= exit + W::SLACK).then_some(entry)
+    // Not clamped to 0: where the ray starts inside, a negative entry is as good a lower bound.
+    let entry = x.0.max(y.0).max(z.0);
+    let exit = x.1.min(y.1).min(z.1).min(limit) + W::SLACK;
+    (entry <= exit && exit >= W::Word::ZERO).then_some(entry)
 }
 
-/// Entry and exit along one axis.
+/// Entry and exit along one axis: the nearer and the farther of the two planes. Comparing what comes out costs less than
+/// choosing what goes in, by the direction's sign, would.
 #[inline(always)]
 fn axis<W: Width>(ray: &Ray<W>, planes: &[[Plane<W>; 3]; 2], axis: usize) -> (W::Word, W::Word) {
-    let negative = ray.negative[axis];
-    let (near, far): (W::Word, W::Word) =
-        (planes[usize::from(negative)][axis].into(), planes[usize::from(!negative)][axis].into());
+    let [low, high] = planes;
     let (origin, reciprocal) = (ray.origin[axis], ray.reciprocal[axis]);
-    (reciprocal.along(near - origin), reciprocal.along(far - origin))
+    let (low, high): (W::Word, W::Word) = (low[axis].into(), high[axis].into());
+    let (a, b) = (reciprocal.along(low - origin), reciprocal.along(high - origin));
+    (a.min(b), a.max(b))
 }

@@ -14,8 +14,6 @@ pub struct Ray<W: Width> {
     pub origin: Triple<W::Word>,
     /// The direction, scaled.
     pub direction: Triple<W::Word>,
-    /// Where the direction is negative.
-    pub(super) negative: [bool; 3],
     pub(super) reciprocal: [W::Reciprocal; 3],
     /// Only hits with t below 2 to this count; `None` for a ray without end.
     pub reach: Option<i32>,
@@ -55,17 +53,7 @@ impl<W: Width> Ray<W> {
                 direction.map(|c| round_shift(c, shift.unsigned_abs()).clamp(-most, most))
             }
         };
-        Some((
-            Self {
-                origin,
-                direction,
-                negative: direction.map(|c| c < W::Word::ZERO),
-                reciprocal: direction.map(W::Reciprocal::new),
-                reach: None,
-                skip,
-            },
-            shift,
-        ))
+        Some((Self { origin, direction, reciprocal: direction.map(W::Reciprocal::new), reach: None, skip }, shift))
     }
 
     /// The `t`, in [`Width::T_BITS`], beyond which nothing counts.
