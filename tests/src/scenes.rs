@@ -5,7 +5,7 @@ use host_tools::builtin;
 use host_tools::import::{self, Embedded};
 use host_tools::model::{Camera, Light, LightKind, Material, Model, RenderSettings, Transfer, Triangle};
 
-use crate::meshes;
+use crate::{meshes, shared};
 
 /// Name and scene, at golden size.
 ///
@@ -103,4 +103,30 @@ pub fn inside(n: i64) -> Model {
     model.background = DVec3::new(1.0, 0.0, 1.0);
     model.lights[0].kind = LightKind::Point(DVec3::splat(0.45));
     model
+}
+
+const SHARED: [&str; 6] = [
+    "bunny/bunny_smooth.obj",
+    "sponza-dabrovic/scene.toml",
+    "coffee/coffee.obj",
+    "teapot/teapot.obj",
+    "suzanne/suzanne.obj",
+    "cornell-box/scene.toml",
+];
+
+/// The shared models that are present, and the golden scenes, all at one size.
+///
+/// # Panics
+/// If a shared model does not import.
+#[must_use]
+pub fn with_shared(size: [u32; 2]) -> Vec<(&'static str, Model)> {
+    let shared = SHARED.into_iter().filter_map(|name| {
+        let path = shared::scene(name)?;
+        Some((name, import::load(&path).expect("a real model").model))
+    });
+    let mut models: Vec<_> = shared.chain(all()).collect();
+    for (_, model) in &mut models {
+        model.render.size = size;
+    }
+    models
 }

@@ -3,34 +3,11 @@
 
 use host_tools::compare::{Comparison, compare, difference};
 use host_tools::engine::{self, Engine};
-use host_tools::import;
 use host_tools::model::Model;
 use host_tools::picture::Picture;
 use host_tools::prepare::Options;
 use host_tools::reference::{Reference, encode};
-use tests::{scenes, shared};
-
-const SHARED: [&str; 6] = [
-    "bunny/bunny_smooth.obj",
-    "sponza-dabrovic/scene.toml",
-    "coffee/coffee.obj",
-    "teapot/teapot.obj",
-    "suzanne/suzanne.obj",
-    "cornell-box/scene.toml",
-];
-
-/// The shared models that are present, and the golden scenes.
-fn models(size: [u32; 2]) -> Vec<(&'static str, Model)> {
-    let shared = SHARED.into_iter().filter_map(|name| {
-        let path = shared::scene(name)?;
-        Some((name, import::load(&path).expect("a real model").model))
-    });
-    let mut all: Vec<_> = shared.chain(scenes::all()).collect();
-    for (_, model) in &mut all {
-        model.render.size = size;
-    }
-    all
-}
+use tests::scenes;
 
 fn engine(name: &str) -> &'static dyn Engine {
     engine::by_name(name).expect("a kernel of this name")
@@ -84,7 +61,7 @@ fn report(kernel: &str, name: &str, apart: &Comparison) {
 
 #[test]
 fn exact29_has_no_pixel_over_64_but_for_ties_and_edges() {
-    for (name, model) in models([1024, 1024]) {
+    for (name, model) in scenes::with_shared([1024, 1024]) {
         let (ours, truth) = (picture(engine("exact29"), &model), truth(&model));
         let apart = compare(&ours, &truth).expect("one size");
         report("exact29", name, &apart);
@@ -96,7 +73,7 @@ fn exact29_has_no_pixel_over_64_but_for_ties_and_edges() {
 
 #[test]
 fn exact14_has_at_most_0_3_percent_over_64_in_a_small_picture() {
-    for (name, model) in models([160, 128]) {
+    for (name, model) in scenes::with_shared([160, 128]) {
         let apart = compare(&picture(engine("exact14"), &model), &truth(&model)).expect("one size");
         report("exact14", name, &apart);
         assert!(apart.over_64 * 1000 <= 3 * 160 * 128, "{name}: {} over 64", apart.over_64);

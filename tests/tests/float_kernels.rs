@@ -11,7 +11,6 @@ use core_rt::stats::NoStats;
 use float_rt::{Float, Format, NodeRecord, TriangleRecord};
 use host_tools::compare::{compare, difference};
 use host_tools::engine;
-use host_tools::import;
 use host_tools::model::Model;
 use host_tools::picture::Picture;
 use host_tools::prepare::Options;
@@ -21,29 +20,7 @@ use rayon::prelude::*;
 use tests::blobs::{Draft, sample};
 use tests::oracle::{Nearest, Oracle, Ray};
 use tests::rays::{self, Rays};
-use tests::{meshes, scenes, shared};
-
-const SHARED: [&str; 6] = [
-    "bunny/bunny_smooth.obj",
-    "sponza-dabrovic/scene.toml",
-    "coffee/coffee.obj",
-    "teapot/teapot.obj",
-    "suzanne/suzanne.obj",
-    "cornell-box/scene.toml",
-];
-
-/// The shared models that are present, and the golden scenes.
-fn models(size: [u32; 2]) -> Vec<(&'static str, Model)> {
-    let shared = SHARED.into_iter().filter_map(|name| {
-        let path = shared::scene(name)?;
-        Some((name, import::load(&path).expect("a real model").model))
-    });
-    let mut all: Vec<_> = shared.chain(scenes::all()).collect();
-    for (_, model) in &mut all {
-        model.render.size = size;
-    }
-    all
-}
+use tests::{meshes, scenes};
 
 fn picture(kernel: &str, model: &Model) -> Picture {
     let engine = engine::by_name(kernel).expect("a kernel of this name");
@@ -67,7 +44,7 @@ fn far_off(ours: &Picture, truth: &Picture) -> Vec<usize> {
 /// that `conformance` explains. `f32` is not held to that, only to few.
 #[test]
 fn f64_is_far_off_only_where_exact29_is_and_f32_seldom() {
-    for (name, model) in models([512, 512]) {
+    for (name, model) in scenes::with_shared([512, 512]) {
         let truth = truth(&model);
         let [double, exact, single] = ["f64", "exact29", "f32"].map(|kernel| {
             let ours = picture(kernel, &model);
