@@ -7,6 +7,7 @@
 use core::cmp::Ordering;
 use core::fmt::Debug;
 
+use crate::arithmetic::{Arithmetic, Knobs};
 use crate::camera::Camera;
 use crate::num::{Triple, Word};
 use crate::record::Record;
@@ -94,6 +95,11 @@ pub trait Kernel: Copy + Debug + Default + Send + Sync + 'static {
     /// The largest material index that a triangle's record holds.
     const MATERIALS_MAX: u32;
 
+    /// What it leaves to the scene, read from the blob's header: `()` where nothing.
+    type Settings: Copy + Debug + Send + Sync;
+    /// What of [`Knobs`] it has, and in which ranges, in words.
+    const KNOBS: &'static str = "it has no knobs";
+
     /// What it shades in.
     type Space: Space;
     /// The word of camera coefficients.
@@ -109,6 +115,12 @@ pub trait Kernel: Copy + Debug + Default + Send + Sync + 'static {
     /// Where a ray hits a triangle, exactly (as exactly as the kernel knows).
     type Depth: Copy + Debug;
 
+    /// The settings for a scene of these triangles, where a user may ask for some; `None` where the kernel lacks what is
+    /// asked for, or cannot hold it. Of the host, in the integers of the device.
+    fn settle(knobs: &Knobs, triangles: impl Iterator<Item = Vertices>) -> Option<Arithmetic>;
+    /// The settings of a blob; `None` where it could not be of [`Kernel::settle`].
+    fn settings(arithmetic: &Arithmetic) -> Option<Self::Settings>;
+
     /// The record of a node, from the boxes of its children and their packed references.
     fn node(boxes: [Bounds; 2], children: [u32; 2]) -> Self::Node;
     /// The packed references of a node's children.
@@ -116,20 +128,30 @@ pub trait Kernel: Copy + Debug + Default + Send + Sync + 'static {
     /// The boxes of a node's children.
     fn boxes(node: &Self::Node) -> [Bounds; 2];
     /// The record of a triangle with vertices on the grid; `None` where it has no area or the material is too high.
-    fn triangle(vertices: &Vertices, material: u32) -> Option<Self::Triangle>;
+    fn triangle(settings: Self::Settings, vertices: &Vertices, material: u32) -> Option<Self::Triangle>;
     /// The corners of a triangle; of a record that [`Kernel::triangle`] did not make, whatever it says.
     fn vertices(triangle: &Self::Triangle) -> Vertices;
     /// The material of a triangle.
     fn material(triangle: &Self::Triangle) -> u32;
 
     /// The ray through a pixel; `None` where the direction is zero.
-    fn primary(camera: &Camera<Self::Word>, x: u16, y: u16) -> Option<Self::Ray>;
+    fn primary(settings: Self::Settings, camera: &Camera<Self::Word>, x: u16, y: u16) -> Option<Self::Ray>;
     /// The ray from an origin on or near the grid in a direction; `None` where that is zero.
-    fn ray(origin: Triple<Self::Word>, direction: Triple<Self::Word>, skip: u32) -> Option<Self::Ray>;
+    fn ray(
+        settings: Self::Settings,
+        origin: Triple<Self::Word>,
+        direction: Triple<Self::Word>,
+        skip: u32,
+    ) -> Option<Self::Ray>;
     /// The open segment from a surface (moved off it, on the normal's side) to a grid point.
-    fn segment(from: &Surface<Self::Space>, to: Triple<i32>, skip: u32) -> Option<Self::Ray>;
+    fn segment(settings: Self::Settings, from: &Surface<Self::Space>, to: Triple<i32>, skip: u32) -> Option<Self::Ray>;
     /// The ray from a surface (moved off it, on the normal's side) in a direction.
-    fn leaving(from: &Surface<Self::Space>, direction: <Self::Space as Space>::Unit, skip: u32) -> Option<Self::Ray>;
+    fn leaving(
+        settings: Self::Settings,
+        from: &Surface<Self::Space>,
+        direction: <Self::Space as Space>::Unit,
+        skip: u32,
+    ) -> Option<Self::Ray>;
 
     /// The primitive that a ray starts on, or [`NONE`].
     fn skip(ray: &Self::Ray) -> u32;

@@ -11,7 +11,7 @@
 //!
 //! # Kernels
 //! A [`kernel::Kernel`] is a space with its records, its box test and its triangle test. [`exact`] has
-//! those whose every decision is exact.
+//! those whose every decision is exact. [`arithmetic`] is what a kernel leaves to the scene.
 //!
 //! # Tracing
 //! [`camera`] rays go through the [`bvh`], hits are shaded, and [`render`] brings tiles to a sink. A
@@ -19,6 +19,7 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+pub mod arithmetic;
 pub mod blob;
 pub mod bvh;
 pub mod camera;

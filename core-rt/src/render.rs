@@ -150,7 +150,7 @@ pub fn render_tile<'w, P: Profile>(
 fn tile_rays<P: Profile>(scene: &Scene<'_, P>, tile: Tile) -> impl Iterator<Item = Option<<P::Kernel as Kernel>::Ray>> {
     let rows = tile.y..tile.y.saturating_add(tile.height);
     let columns = tile.x..tile.x.saturating_add(tile.width);
-    rows.flat_map(move |y| columns.clone().map(move |x| P::Kernel::primary(&scene.camera, x, y)))
+    rows.flat_map(move |y| columns.clone().map(move |x| P::Kernel::primary(scene.settings, &scene.camera, x, y)))
 }
 
 /// Renders a picture, tile by tile.

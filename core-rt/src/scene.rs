@@ -52,6 +52,8 @@ impl<K: Kernel> Shading<'_, K> {
 pub struct Scene<'a, P: Profile> {
     /// What its header says.
     pub header: Header,
+    /// What the kernel computes with.
+    pub settings: <P::Kernel as Kernel>::Settings,
     /// The view.
     pub camera: Camera<<P::Kernel as Kernel>::Word>,
     /// Geometry.
@@ -74,10 +76,11 @@ impl<'a, P: Profile> Scene<'a, P> {
         if let Some(need) = header.needs.first_missing_in(P::NEEDS) {
             return Err(BlobError::Missing(need));
         }
+        let settings = P::Kernel::settings(&header.arithmetic).ok_or(BlobError::Header)?;
         let camera = camera::<P::Kernel>(&header).ok_or(BlobError::Header)?;
         let (bvh, shading) = view(&header, sections).ok_or(BlobError::Sections)?;
-        check(&header, &bvh, &shading)?;
-        Ok(Self { header, camera, bvh, shading })
+        check(&header, settings, &bvh, &shading)?;
+        Ok(Self { header, settings, camera, bvh, shading })
     }
 }
 

@@ -90,9 +90,9 @@ fn direct<P: Profile>(
     let cosine = SpaceOf::<P>::cosine(normal, towards)?;
     if P::NEEDS.has(Need::Shadows) {
         let shadow = if point_light {
-            P::Kernel::segment(surface, light.place, hit)
+            P::Kernel::segment(scene.settings, surface, light.place, hit)
         } else {
-            P::Kernel::leaving(surface, towards, hit)
+            P::Kernel::leaving(scene.settings, surface, towards, hit)
         };
         stats.ray(RayKind::Shadow);
         if shadow.is_some_and(|ray| scene.bvh.any(&ray, stack, stats)) {

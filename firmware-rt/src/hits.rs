@@ -29,8 +29,9 @@ pub fn find<P: Profile>(
 ) {
     let rows = tile.y..tile.y.saturating_add(tile.height);
     let columns = tile.x..tile.x.saturating_add(tile.width);
-    let rays =
-        rows.flat_map(move |y| columns.clone().map(move |x| <P::Kernel as Kernel>::primary(&scene.camera, x, y)));
+    let rays = rows.flat_map(move |y| {
+        columns.clone().map(move |x| <P::Kernel as Kernel>::primary(scene.settings, &scene.camera, x, y))
+    });
     match way {
         Way::Tile => scene.bvh.closest_tile(rays, hits, stack, stats),
         Way::Single => {

@@ -3,6 +3,7 @@
 use core::cmp::Ordering;
 use core::marker::PhantomData;
 
+use core_rt::arithmetic::{Arithmetic, Knobs};
 use core_rt::camera::Camera;
 use core_rt::kernel::{Bounds, Kernel, NONE, Surface, Vertices};
 use core_rt::num::{Triple, Word};
@@ -32,6 +33,7 @@ impl<F: Format> Kernel for Float<F> {
     const DIRECTION_BITS: u32 = F::DIRECTION_BITS;
     const MATERIALS_MAX: u32 = triangle::MATERIALS_MAX;
 
+    type Settings = ();
     type Space = FloatSpace<F>;
     type Word = i64;
     type Node = F::Node;
@@ -39,6 +41,14 @@ impl<F: Format> Kernel for Float<F> {
     type Ray = Ray<F>;
     type Distance = F;
     type Depth = F;
+
+    fn settle(knobs: &Knobs, _triangles: impl Iterator<Item = Vertices>) -> Option<Arithmetic> {
+        Arithmetic::fixed(knobs)
+    }
+
+    fn settings(arithmetic: &Arithmetic) -> Option<()> {
+        arithmetic.none()
+    }
 
     fn node(boxes: [Bounds; 2], children: [u32; 2]) -> F::Node {
         boxes::pack::<F>(boxes, children)
@@ -53,7 +63,7 @@ impl<F: Format> Kernel for Float<F> {
         boxes::unpack::<F>(node)
     }
 
-    fn triangle(vertices: &Vertices, material: u32) -> Option<F::Triangle> {
+    fn triangle((): (), vertices: &Vertices, material: u32) -> Option<F::Triangle> {
         triangle::pack::<F>(vertices, material)
     }
 
@@ -67,25 +77,25 @@ impl<F: Format> Kernel for Float<F> {
     }
 
     #[inline]
-    fn primary(camera: &Camera<i64>, x: u16, y: u16) -> Option<Ray<F>> {
+    fn primary((): (), camera: &Camera<i64>, x: u16, y: u16) -> Option<Ray<F>> {
         // The header has the eye in 32 bits, and a direction has at most 31.
         let [origin, direction] = [camera.eye(), camera.direction(x, y)].map(|v| v.map(|c| F::from_i32(c.low_i32())));
         Ray::new(origin, direction, F::INFINITY, NONE)
     }
 
     #[inline]
-    fn ray(origin: Triple<i64>, direction: Triple<i64>, skip: u32) -> Option<Ray<F>> {
+    fn ray((): (), origin: Triple<i64>, direction: Triple<i64>, skip: u32) -> Option<Ray<F>> {
         Ray::new(origin.map(F::from_i64), direction.map(F::from_i64), F::INFINITY, skip)
     }
 
     #[inline]
-    fn segment(from: &Surface<FloatSpace<F>>, to: Triple<i32>, skip: u32) -> Option<Ray<F>> {
+    fn segment((): (), from: &Surface<FloatSpace<F>>, to: Triple<i32>, skip: u32) -> Option<Ray<F>> {
         let origin = stand_off(from);
         Ray::new(origin, sub(to.map(F::from_i32), origin), F::SEGMENT_END, skip)
     }
 
     #[inline]
-    fn leaving(from: &Surface<FloatSpace<F>>, direction: Triple<F>, skip: u32) -> Option<Ray<F>> {
+    fn leaving((): (), from: &Surface<FloatSpace<F>>, direction: Triple<F>, skip: u32) -> Option<Ray<F>> {
         Ray::new(stand_off(from), direction, F::INFINITY, skip)
     }
 

@@ -7,6 +7,7 @@ mod layout;
 
 pub use layout::Blob;
 
+use core_rt::arithmetic::Knobs;
 use core_rt::bvh::Child;
 use core_rt::kernel::{Bounds, Kernel};
 use core_rt::num::{cross, sub};
@@ -22,6 +23,8 @@ use crate::tree::{self, Tree, TreeOptions};
 pub struct Options {
     /// The tree.
     pub tree: TreeOptions,
+    /// What is asked of the kernel's arithmetic.
+    pub knobs: Knobs,
 }
 
 /// Why a scene cannot be prepared for a kernel.
@@ -58,6 +61,14 @@ pub enum PrepareError {
         found: usize,
         /// How many there may be.
         most: u32,
+        /// The kernel's name.
+        kernel: &'static str,
+    },
+    /// The kernel has not the knobs that are asked for, or not in that range.
+    #[error("{kernel} cannot be set so: {ranges}")]
+    Knobs {
+        /// What it has.
+        ranges: &'static str,
         /// The kernel's name.
         kernel: &'static str,
     },
@@ -122,10 +133,13 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
     let Tree { root, nodes, order, depth } =
         tree::build(ids.iter().map(|&id| Bounds::of(&snapped.corners(id))), options.tree);
     let ids: Vec<u32> = order.into_iter().map(|place| ids[place as usize]).collect();
+    let refused = PrepareError::Knobs { ranges: K::KNOBS, kernel: K::NAME };
+    let arithmetic = K::settle(&options.knobs, ids.iter().map(|&id| snapped.corners(id))).ok_or(refused)?;
+    let settings = K::settings(&arithmetic).ok_or(refused)?;
     // Corners are on the grid and have area, and materials were counted: `triangle` has no reason left to refuse.
     let triangle = |&id: &u32| {
         let material = materials[model.triangles[id as usize].material as usize];
-        K::triangle(&snapped.corners(id), material).expect("a triangle that the grid and the kernel hold")
+        K::triangle(settings, &snapped.corners(id), material).expect("a triangle that the grid and the kernel hold")
     };
     let used: Vec<Material> = used.iter().map(|&m| header::material(&model.materials[m as usize])).collect();
     let blob = layout::write::<K>(
@@ -134,6 +148,7 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
         layout::Parts {
             root,
             depth,
+            arithmetic,
             nodes: nodes.iter().map(|node| K::node(node.boxes, node.children)),
             triangles: ids.iter().map(triangle),
             ids: &ids,

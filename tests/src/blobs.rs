@@ -2,7 +2,7 @@
 
 use core_rt::blob::{Header, MAGIC, PREFIX_SIZE, Prefix, TRAILER_SIZE, VERSION, crc32};
 use core_rt::colour::Rgb888;
-use core_rt::kernel::Kernel;
+use core_rt::kernel::{Kernel, Vertices};
 use core_rt::profile::{Full, Need};
 use core_rt::record::{Light, Material, Record};
 use core_rt::render::{Tile, Workspace, render_tile};
@@ -36,6 +36,12 @@ pub struct Draft<K: Kernel> {
 }
 
 impl<K: Kernel> Draft<K> {
+    /// The record of a triangle as the draft's kernel makes it; `None` where it makes none.
+    #[must_use]
+    pub fn triangle(&self, vertices: &Vertices, material: u32) -> Option<K::Triangle> {
+        K::triangle(K::settings(&self.header.arithmetic)?, vertices, material)
+    }
+
     /// Takes a blob apart by its header's counts, without a look at what the records say. `None` where the header cannot
     /// be decoded or the blob is too short for its counts.
     #[must_use]
@@ -145,7 +151,7 @@ pub fn sample<K: Kernel>(smooth: bool) -> Blob {
     ];
     let model = load_from(&Embedded(&files), "s.toml").expect("a good scene").model;
     let tree = TreeOptions { leaf_max: 1, leaf_always: true, ..TreeOptions::default() };
-    prepare::<K>(&model, &Options { tree }).expect("it fits every kernel").blob
+    prepare::<K>(&model, &Options { tree, ..Options::default() }).expect("it fits every kernel").blob
 }
 
 /// Renders the first tile of an accepted scene and the last, of at most 8x8 pixels, and returns the pixels of both.

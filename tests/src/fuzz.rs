@@ -46,11 +46,8 @@ fn blob_of<K: Kernel>(data: &[u8]) {
     let signed = repaired(data, K::ID);
     render_if_accepted::<K>(&signed);
     if let Some(mut draft) = Draft::<K>::read(signed.bytes()) {
-        for triangle in &mut draft.triangles {
-            if let Some(made) = K::triangle(&K::vertices(triangle), K::material(triangle)) {
-                *triangle = made;
-            }
-        }
+        let made = |triangle: &K::Triangle| draft.triangle(&K::vertices(triangle), K::material(triangle));
+        draft.triangles = draft.triangles.iter().map(|triangle| made(triangle).unwrap_or(*triangle)).collect();
         render_if_accepted::<K>(&draft.write());
     }
 }

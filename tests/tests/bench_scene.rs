@@ -29,7 +29,7 @@ fn counts<K: Kernel>(model: &Model) -> (Counts, u64) {
     let (mut counts, mut hits) = (Counts::default(), 0);
     let [width, height] = scene.header.size;
     for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
-        let Some(ray) = K::primary(&scene.camera, x, y) else { continue };
+        let Some(ray) = K::primary(scene.settings, &scene.camera, x, y) else { continue };
         let hit = scene.bvh.closest(&ray, &mut stack, &mut counts);
         hits += u64::from(scene.bvh.triangles.get(hit as usize).is_some());
     }

@@ -32,7 +32,7 @@ where
     fn new(corners: &[Vertices], leaf_max: u32) -> Self {
         let options = TreeOptions { leaf_max, leaf_always: leaf_max != 8, ..TreeOptions::default() };
         let flat = tree::build(corners.iter().map(core_rt::kernel::Bounds::of), options);
-        let triangle = |&i: &u32| Exact::<W>::triangle(&corners[i as usize], 0).expect("on the grid, with area");
+        let triangle = |&i: &u32| Exact::<W>::triangle((), &corners[i as usize], 0).expect("on the grid, with area");
         let mut places = vec![0; corners.len()];
         for (place, &id) in (0..).zip(&flat.order) {
             places[id as usize] = place;
@@ -102,7 +102,7 @@ fn on_grid<W: Width>(triangles: &[Triangle]) -> (Vec<Vertices>, Vec<Triangle>) {
         .iter()
         .map(|t| t.map(|v| v.map(|c| c.clamp(W::MARGIN.into(), last))))
         .map(|t| (t.map(|v| v.map(|c| c as i32)), t))
-        .filter(|(corners, _)| Exact::<W>::triangle(corners, 0).is_some())
+        .filter(|(corners, _)| Exact::<W>::triangle((), corners, 0).is_some())
         .unzip()
 }
 

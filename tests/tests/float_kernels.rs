@@ -122,13 +122,13 @@ fn trace<F: Format + Into<f64>>(corners: &[Vertices], rays: &[Ray], shrink: i32)
     let shrunk = bounds.map(|b| Bounds { low: b.low.map(|c| c + shrink), high: b.high.map(|c| c - shrink) });
     let built = tree::build(shrunk, TreeOptions::default());
     let nodes: Vec<_> = built.nodes.iter().map(|n| Float::<F>::node(n.boxes, n.children)).collect();
-    let triangle = |&i: &u32| Float::<F>::triangle(&corners[i as usize], 0).expect("on the grid, with area");
+    let triangle = |&i: &u32| Float::<F>::triangle((), &corners[i as usize], 0).expect("on the grid, with area");
     let triangles: Vec<_> = built.order.iter().map(triangle).collect();
     let ids = Integers::Wide(&built.order);
     let bvh = Bvh::<Float<F>> { root: built.root, nodes: &nodes, triangles: &triangles, ids };
     let oracle = Oracle::new(&corners.iter().map(|t| t.map(|v| v.map(i64::from))).collect::<Vec<_>>());
     let outcome = |(ray, exact): (&Ray, Option<Nearest>)| {
-        let ray = Float::<F>::ray(ray.origin, ray.direction, NONE).expect("no direction is zero");
+        let ray = Float::<F>::ray((), ray.origin, ray.direction, NONE).expect("no direction is zero");
         let depth = |triangle: &F::Triangle| Float::<F>::intersect(&ray, triangle).map(Into::into);
         let computed: Option<f64> = triangles.iter().filter_map(depth).min_by(f64::total_cmp);
         let mut stack = heapless::Vec::<_, MAX_DEPTH>::new();
@@ -156,7 +156,7 @@ fn trace_all<F: Format + Into<f64>>(shrink: i32) -> Outcome {
         let corners: Vec<Vertices> = mesh
             .iter()
             .map(|t| t.map(|v| v.map(|c| (c as i32).clamp(margin, last))))
-            .filter(|corners| Float::<F>::triangle(corners, 0).is_some())
+            .filter(|corners| Float::<F>::triangle((), corners, 0).is_some())
             .collect();
         let bounds = rays::Bounds {
             grid_bits: F::GRID_BITS,

@@ -66,7 +66,7 @@ fn pictures_do_not_depend_on_the_leaf_threshold() {
         for engine in ENGINES.into_iter().filter(|engine| engine.name().starts_with("exact")) {
             let picture = |leaf_max: u32| {
                 let tree = TreeOptions { leaf_max, leaf_always: true, ..TreeOptions::default() };
-                let prepared = engine.prepare(&model, &Options { tree }).expect("it fits");
+                let prepared = engine.prepare(&model, &Options { tree, ..Options::default() }).expect("it fits");
                 engine.render(prepared.blob.bytes(), [32, 32], &|_| {}).expect("a blob just made").picture
             };
             let expected = picture(1);

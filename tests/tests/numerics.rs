@@ -93,7 +93,7 @@ where
                 let corners = mesh[random.below(mesh.len() as u64) as usize];
                 let word = |v: [i64; 3]| v.map(|c| W::Word::from_i64(c).expect("in range"));
                 let (Some(triangle), Some(ray)) = (
-                    Exact::<W>::triangle(&corners.map(|v| v.map(|c| c as i32)), 0),
+                    Exact::<W>::triangle((), &corners.map(|v| v.map(|c| c as i32)), 0),
                     Ray::<W>::new(word(ray.origin), word(ray.direction), NONE),
                 ) else {
                     continue;

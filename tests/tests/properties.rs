@@ -85,7 +85,7 @@ proptest! {
     ) {
         let tree = TreeOptions { leaf_max, leaf_always, ..TreeOptions::default() };
         for engine in ENGINES {
-            let Ok(prepared) = engine.prepare(&model, &Options { tree }) else { continue };
+            let Ok(prepared) = engine.prepare(&model, &Options { tree, ..Options::default() }) else { continue };
             let (header, _) = engine.inspect(prepared.blob.bytes()).map_err(|e| TestCaseError::fail(e.to_string()))?;
             prop_assert_eq!(header.counts.triangles + prepared.degenerates.total(), model.triangles.len() as u32);
             let rendered = engine.render(prepared.blob.bytes(), [16, 16], &|_| {});

@@ -15,14 +15,19 @@ use crate::scene::{MAX_DEPTH, Shading};
 use crate::space::{Space, is_unit_q30};
 
 /// Checks everything that the sections say.
-pub(crate) fn check<K: Kernel>(header: &Header, bvh: &Bvh<'_, K>, shading: &Shading<'_, K>) -> Result<(), BlobError> {
+pub(crate) fn check<K: Kernel>(
+    header: &Header,
+    settings: K::Settings,
+    bvh: &Bvh<'_, K>,
+    shading: &Shading<'_, K>,
+) -> Result<(), BlobError> {
     tree(header, bvh)?;
     origins(header, bvh, shading)?;
     for (index, triangle) in (0..).zip(bvh.triangles) {
         let material = K::material(triangle);
         let vertices = K::vertices(triangle);
         // Whatever the vertices wrap to, only a record made from vertices on the grid is equal to what is made of them.
-        let consistent = K::triangle(&vertices, material).is_some_and(|made| made == *triangle);
+        let consistent = K::triangle(settings, &vertices, material).is_some_and(|made| made == *triangle);
         let id_exists = bvh.ids.get(index) < header.file_triangles;
         let normals_exist = shading.normal_indices.is_empty()
             || shading.normal_indices.triple(index).iter().all(|&n| (n as usize) < shading.normals.len())
@@ -89,8 +94,28 @@ fn used<K: Kernel>(header: &Header, shading: &Shading<'_, K>) -> Needs {
         .with(Need::Linear, header.transfer == Transfer::Linear)
 }
 
-/// A node whose second child is still to be checked, and that child's level.
-type Pending = (u32, u8);
+/// A node whose second child is still to be checked, and that child's level: a word for both, since nothing that a chip
+/// does takes more stack than this check. Indices that a tree can refer to are below 2^25.
+#[derive(Clone, Copy)]
+struct Pending(u32);
+
+const _: () = assert!(Child::INDEX_END == 1 << Pending::INDEX_BITS && MAX_DEPTH < 1 << (32 - Pending::INDEX_BITS));
+
+impl Pending {
+    const INDEX_BITS: u32 = 25;
+
+    fn new(node: u32, level: u8) -> Self {
+        Self(u32::from(level) << Self::INDEX_BITS | node)
+    }
+
+    fn node(self) -> u32 {
+        self.0 & (Child::INDEX_END - 1)
+    }
+
+    fn level(self) -> u8 {
+        (self.0 >> Self::INDEX_BITS) as u8
+    }
+}
 
 // Out of line, so that its stack is not on top of what the header takes while it is decoded.
 #[inline(never)]
@@ -112,7 +137,7 @@ fn tree<K: Kernel>(header: &Header, bvh: &Bvh<'_, K>) -> Result<(), BlobError> {
         let inside = |content: &Bounds| held.unwrap_or(grid).contains(content);
         match Child::unpack(reference) {
             Child::Node(index) => {
-                if index != next_node {
+                if index != next_node || index >= Child::INDEX_END {
                     return Err(BlobError::Tree { node });
                 }
                 let record = bvh.nodes.get(index as usize).ok_or(BlobError::Tree { node })?;
@@ -124,7 +149,7 @@ fn tree<K: Kernel>(header: &Header, bvh: &Bvh<'_, K>) -> Result<(), BlobError> {
                     return Err(BlobError::Bounds { node });
                 }
                 let [first, _] = K::children(record);
-                pending.push((index, level + 1)).map_err(|_| BlobError::Depth { stated: header.depth })?;
+                pending.push(Pending::new(index, level + 1)).map_err(|_| BlobError::Depth { stated: header.depth })?;
                 current = (first, Some((index, false)), level + 1);
             }
             Child::Leaf { first, count } => {
@@ -137,7 +162,8 @@ fn tree<K: Kernel>(header: &Header, bvh: &Bvh<'_, K>) -> Result<(), BlobError> {
                 if !run.iter().all(|t| inside(&Bounds::of(&K::vertices(t)))) {
                     return Err(BlobError::Bounds { node });
                 }
-                let Some((node, level)) = pending.pop() else { break };
+                let Some(waiting) = pending.pop() else { break };
+                let (node, level) = (waiting.node(), waiting.level());
                 let record = bvh.nodes.get(node as usize).ok_or(BlobError::Tree { node })?;
                 let [_, second] = K::children(record);
                 current = (second, Some((node, true)), level);

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 use super::BlobError;
+use crate::arithmetic::Arithmetic;
 use crate::camera::CameraHeader;
 use crate::colour::{Radiance, Transfer};
 use crate::profile::Needs;
@@ -88,6 +89,8 @@ pub struct Header {
     pub counts: Counts,
     /// Triangles in the file, degenerate ones included: ids are below this.
     pub file_triangles: u32,
+    /// What the kernel computes with.
+    pub arithmetic: Arithmetic,
     /// Where the grid came from.
     pub source: SourceGrid,
 }

@@ -16,6 +16,7 @@ mod width;
 mod width14;
 mod width29;
 
+pub(crate) use boxes::slab;
 pub use boxes::{BoxNode, BoxNode14, BoxNode29};
 pub use ray::Ray;
 pub use triangle::{Depth, TriangleRecord};
@@ -26,6 +27,7 @@ pub use width29::Width29;
 use core::cmp::Ordering;
 use core::marker::PhantomData;
 
+use crate::arithmetic::{Arithmetic, Knobs};
 use crate::camera::Camera;
 use crate::kernel::{Bounds, Kernel, NONE, Surface, Vertices};
 use crate::num::{Triple, Word};
@@ -50,6 +52,7 @@ impl<W: Width> Kernel for Exact<W> {
     const DIRECTION_BITS: u32 = W::DIRECTION_BITS;
     const MATERIALS_MAX: u32 = W::MATERIALS_MAX;
 
+    type Settings = ();
     type Space = W::Space;
     type Word = W::Word;
     type Node = W::Node;
@@ -57,6 +60,14 @@ impl<W: Width> Kernel for Exact<W> {
     type Ray = Ray<W>;
     type Distance = W::Word;
     type Depth = Depth<W>;
+
+    fn settle(knobs: &Knobs, _triangles: impl Iterator<Item = Vertices>) -> Option<Arithmetic> {
+        Arithmetic::fixed(knobs)
+    }
+
+    fn settings(arithmetic: &Arithmetic) -> Option<()> {
+        arithmetic.none()
+    }
 
     fn node(boxes: [Bounds; 2], children: [u32; 2]) -> Self::Node {
         boxes::pack(boxes, children)
@@ -71,7 +82,7 @@ impl<W: Width> Kernel for Exact<W> {
         boxes::unpack::<W>(node)
     }
 
-    fn triangle(vertices: &Vertices, material: u32) -> Option<Self::Triangle> {
+    fn triangle((): (), vertices: &Vertices, material: u32) -> Option<Self::Triangle> {
         triangle::pack::<W>(vertices, material)
     }
 
@@ -85,22 +96,22 @@ impl<W: Width> Kernel for Exact<W> {
     }
 
     #[inline]
-    fn primary(camera: &Camera<W::Word>, x: u16, y: u16) -> Option<Ray<W>> {
+    fn primary((): (), camera: &Camera<W::Word>, x: u16, y: u16) -> Option<Ray<W>> {
         Ray::new(camera.eye(), camera.direction(x, y), NONE)
     }
 
     #[inline]
-    fn ray(origin: Triple<W::Word>, direction: Triple<W::Word>, skip: u32) -> Option<Ray<W>> {
+    fn ray((): (), origin: Triple<W::Word>, direction: Triple<W::Word>, skip: u32) -> Option<Ray<W>> {
         Ray::new(origin, direction, skip)
     }
 
     #[inline]
-    fn segment(from: &Surface<W::Space>, to: Triple<i32>, skip: u32) -> Option<Ray<W>> {
+    fn segment((): (), from: &Surface<W::Space>, to: Triple<i32>, skip: u32) -> Option<Ray<W>> {
         Ray::segment(W::stand_off(from), to.map(W::Word::from_i32), skip)
     }
 
     #[inline]
-    fn leaving(from: &Surface<W::Space>, direction: <W::Space as Space>::Unit, skip: u32) -> Option<Ray<W>> {
+    fn leaving((): (), from: &Surface<W::Space>, direction: <W::Space as Space>::Unit, skip: u32) -> Option<Ray<W>> {
         Ray::new(W::stand_off(from), W::direction(direction), skip)
     }
 

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
+use core_rt::arithmetic::Knobs;
 use core_rt::blob::{BlobError, Prefix};
 use core_rt::bvh::Child;
 use core_rt::exact::Exact14;
@@ -51,6 +52,43 @@ pub(super) struct SceneArguments {
         allow_negative_numbers = true
     )]
     pub(super) triangles: Option<u32>,
+
+    #[command(flatten)]
+    knobs: KnobArguments,
+}
+
+/// What a study sets of a kernel's arithmetic.
+#[derive(Clone, Copy, Debug, Args)]
+#[command(next_help_heading = "Arithmetic (hanika-* only)")]
+struct KnobArguments {
+    /// C: bits by which reciprocals of directions are shifted to the left
+    #[arg(long = "c-bits", value_name = "C", allow_negative_numbers = true)]
+    c_bits: Option<u8>,
+
+    /// D: bits by which differences to a box's planes are shifted to the right
+    #[arg(long = "d-bits", value_name = "D", allow_negative_numbers = true)]
+    d_bits: Option<u8>,
+
+    /// E: bits by which edges are shifted to the left [default: the most that the scene allows]
+    #[arg(long, value_name = "E", allow_negative_numbers = true)]
+    edge_shift: Option<u8>,
+
+    /// How far from a surface rays leave it, grid units
+    #[arg(long, value_name = "UNITS", allow_negative_numbers = true)]
+    epsilon: Option<u8>,
+}
+
+impl From<KnobArguments> for Knobs {
+    fn from(arguments: KnobArguments) -> Self {
+        let KnobArguments { c_bits, d_bits, edge_shift, epsilon } = arguments;
+        Self { c_bits, d_bits, edge_shift, epsilon }
+    }
+}
+
+impl KnobArguments {
+    fn any(self) -> bool {
+        Knobs::from(self) != Knobs::default()
+    }
 }
 
 /// A blob, with the kernel that it is for and what it was made from.
@@ -129,10 +167,14 @@ impl SceneArguments {
         if !size_is_allowed(own[0], own[1]) {
             return Err(Failure::input(format!("{path}: the blob is for {}x{} pixels; {SIZES}", own[0], own[1])));
         }
-        if self.leaf.is_some() || self.triangles.is_some() || self.size.is_some_and(|size| size != own) {
+        if self.leaf.is_some()
+            || self.triangles.is_some()
+            || self.knobs.any()
+            || self.size.is_some_and(|size| size != own)
+        {
             return Err(Failure::input(format!(
-                "{path}: the blob is for {}x{} pixels, and its tree is built; --size, --leaf and --triangles need the \
-                 scene that it was made from",
+                "{path}: the blob is for {}x{} pixels, and its tree is built; --size, --leaf, --triangles and the \
+                 knobs of its arithmetic need the scene that it was made from",
                 own[0], own[1]
             )));
         }
@@ -145,7 +187,10 @@ impl SceneArguments {
 
     fn options(&self) -> Options {
         let tree = TreeOptions::default();
-        Options { tree: self.leaf.map_or(tree, |leaf_max| TreeOptions { leaf_max, leaf_always: true, ..tree }) }
+        Options {
+            tree: self.leaf.map_or(tree, |leaf_max| TreeOptions { leaf_max, leaf_always: true, ..tree }),
+            knobs: self.knobs.into(),
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! The blob's bytes. `docs/BLOB.md` specifies them; `core_rt::blob` reads them.
 
+use core_rt::arithmetic::Arithmetic;
 use core_rt::blob::{Counts, Header, MAGIC, PREFIX_SIZE, Prefix, SourceGrid, TRAILER_SIZE, VERSION, crc32};
 use core_rt::kernel::Kernel;
 use core_rt::profile::Need;
@@ -39,6 +40,7 @@ impl Blob {
 pub(super) struct Parts<'a, N, T> {
     pub(super) root: u32,
     pub(super) depth: u8,
+    pub(super) arithmetic: Arithmetic,
     pub(super) nodes: N,
     pub(super) triangles: T,
     /// The file's number of each triangle.
@@ -117,6 +119,7 @@ pub(super) fn write<K: Kernel>(
             lights: lights.len() as u32,
         },
         file_triangles: model.triangles.len() as u32,
+        arithmetic: parts.arithmetic,
         source: SourceGrid { origin_bits: grid.origin.to_array().map(f64::to_bits), scale_bits: grid.scale.to_bits() },
     };
     let encoded = postcard::to_stdvec(&header).unwrap_or_default();

@@ -76,6 +76,7 @@ fn header(blob: &Blob, model: &Model) -> Checked {
     rule(header.size == model.render.size.map(u64::from), "size")?;
     rule(header.transfer == u64::from(linear), "transfer")?;
     rule(header.file_triangles == model.triangles.len() as u64, "triangles in the file")?;
+    rule(header.arithmetic == [0; 4], "arithmetic")?;
     rule(blob.corners.len() == if smooth { blob.triangles.len() } else { 0 }, "smooth")?;
     rule(is_light(&header.background, model.background), "background")?;
     rule(is_light(&header.ambient, model.render.ambient), "ambient")

@@ -66,6 +66,8 @@ pub(crate) struct Header {
     /// Nodes, triangles, smooth, normals, materials, lights.
     pub(crate) counts: [usize; 6],
     pub(crate) file_triangles: u64,
+    /// C, D, E, epsilon.
+    pub(crate) arithmetic: [u8; 4],
     pub(crate) origin: [f64; 3],
     pub(crate) scale: f64,
 }
@@ -208,6 +210,7 @@ impl Cursor<'_> {
             depth: self.unsigned(1) as u8,
             counts: [(); 6].map(|()| self.varint(32) as usize),
             file_triangles: self.varint(32),
+            arithmetic: [(); 4].map(|()| self.unsigned(1) as u8),
             origin: self.three(|c| f64::from_bits(c.varint(64))),
             scale: f64::from_bits(self.varint(64)),
         }

@@ -18,7 +18,7 @@ fn broken_triangles<K: Kernel>() {
         &[
             (
                 "a material that does not exist",
-                |d| d.triangles[2] = K::triangle(&K::vertices(&d.triangles[2]), 2).expect("it can be packed"),
+                |d| d.triangles[2] = d.triangle(&K::vertices(&d.triangles[2]), 2).expect("it can be packed"),
                 third,
             ),
             (

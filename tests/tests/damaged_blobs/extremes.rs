@@ -43,7 +43,7 @@ fn largest<K: Kernel>(smooth: bool) -> Draft<K> {
     draft.lights = points.chain(directions).map(|(kind, place)| Light { kind, place, radiance: brightest }).collect();
     let all = (0..8).flat_map(|a| (a + 1..8).flat_map(move |b| (b + 1..8).map(move |c| [a, b, c])));
     let vertices = all.map(|triple| -> Vertices { triple.map(|index| corner(index, low, high)) });
-    draft.triangles = vertices.map(|triangle| K::triangle(&triangle, 1).expect("it has an area")).collect();
+    draft.triangles = vertices.map(|triangle| draft.triangle(&triangle, 1).expect("it has an area")).collect();
     let count = draft.triangles.len() as u32;
     draft.ids = (0..count).collect();
     draft.normal_indices =

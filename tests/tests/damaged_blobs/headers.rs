@@ -81,9 +81,16 @@ fn broken_counts<K: Kernel>() {
 }
 
 fn broken_padding<K: Kernel>() {
-    let blob = sample::<K>(true);
+    let size_of_header = |good: &[u8]| u32::from_le_bytes([good[12], good[13], good[14], good[15]]) as usize;
+    let mut blob = sample::<K>(true);
+    if size_of_header(blob.bytes()).is_multiple_of(8) {
+        // A larger number takes a byte more, and then there is padding.
+        let mut draft = Draft::<K>::read(blob.bytes()).expect("a good blob");
+        draft.header.file_triangles <<= 7;
+        blob = draft.write();
+    }
     let good = blob.bytes();
-    let header_size = u32::from_le_bytes([good[12], good[13], good[14], good[15]]) as usize;
+    let header_size = size_of_header(good);
     assert_ne!(header_size % 8, 0, "this sample shows nothing: its header has no padding");
     let with = |place: usize, value: &[u8]| {
         let mut bytes = good.to_vec();
