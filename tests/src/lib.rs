@@ -8,6 +8,7 @@ pub mod random;
 pub mod rays;
 pub mod scenes;
 pub mod shared;
+pub mod symbols;
 
 /// How much more the long run does: 10 with `INTRAY_LONG` set, else 1.
 #[must_use]

@@ -1,0 +1,32 @@
+//! The profile of the blob, as firmware has it.
+
+use std::path::PathBuf;
+use std::{env, fs, io};
+
+use firmware_rt::build::{BLOB_VARIABLE, DEFAULT_BLOB, Traits};
+
+fn main() -> io::Result<()> {
+    println!("cargo::rerun-if-env-changed={BLOB_VARIABLE}");
+    let path = env::var_os(BLOB_VARIABLE).map_or_else(|| DEFAULT_BLOB.into(), PathBuf::from);
+    println!("cargo::rerun-if-changed={}", path.display());
+    let wrong = |what: &str| io::Error::other(format!("{}: {what}", path.display()));
+    let traits = Traits::of(&fs::read(&path)?).ok_or_else(|| wrong("not a blob"))?;
+    let kernel = traits.kernel_path().ok_or_else(|| wrong("no firmware has this blob's kernel"))?;
+    let out = PathBuf::from(env::var_os("OUT_DIR").ok_or_else(|| wrong("no OUT_DIR"))?);
+    fs::write(out.join("profile.rs"), profile(kernel, &traits))
+}
+
+/// The Rust of a profile: its kernel, its needs, and the levels of its trees.
+fn profile(kernel: &str, Traits { needs, depth, .. }: &Traits) -> String {
+    format!(
+        "type Kernel = {kernel};\n\
+         const DEPTH: usize = {depth};\n\
+         \n\
+         #[derive(Clone, Copy, Debug, Default)]\n\
+         struct This;\n\
+         \n\
+         impl core_rt::profile::Profile for This {{\n    \
+         type Kernel = Kernel;\n    \
+         const NEEDS: core_rt::profile::Needs = core_rt::profile::Needs::from_bits({needs:#x});\n}}\n"
+    )
+}
