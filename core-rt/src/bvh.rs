@@ -112,56 +112,84 @@ impl<K: Kernel> Bvh<'_, K> {
         mut visit: impl FnMut(u32, &K::Triangle) -> Option<K::Distance>,
     ) {
         let mut limit = K::reach(ray);
-        let skip = K::skip(ray);
-        let mut current = self.root;
+        let (skip, octant) = (K::skip(ray), K::octant(ray));
+        let mut next = Some(self.root);
         stack.clear();
-        loop {
-            match Child::unpack(current) {
-                Child::Node(index) => {
-                    // A checked scene has the node; an end without it is what a traversal of nothing is.
-                    let Some(node) = self.nodes.get(index as usize) else { return };
-                    stats.boxes(2);
-                    let [first, second] = K::children(node);
-                    let descend = match K::enter(ray, node, limit) {
-                        [Some(a), Some(b)] => {
-                            let (near, far) = if b < a { (second, (first, a)) } else { (first, (second, b)) };
-                            // A checked tree is no deeper than the stack.
-                            let _ = stack.push(far);
-                            near
-                        }
-                        [Some(_), None] => first,
-                        [None, Some(_)] => second,
-                        [None, None] => match next::<K>(stack, limit) {
-                            Some(waiting) => waiting,
-                            None => return,
-                        },
-                    };
-                    current = descend;
-                }
-                Child::Leaf { first, count } => {
-                    let run = self.triangles.get(first as usize..(first + count) as usize).unwrap_or_default();
-                    for (index, triangle) in (first..).zip(run) {
-                        if index != skip {
-                            stats.triangle();
-                            match visit(index, triangle) {
-                                Some(nearer) => limit = nearer,
-                                None => return,
-                            }
-                        }
-                    }
-                    match next::<K>(stack, limit) {
-                        Some(waiting) => current = waiting,
+        while let Some((first, count)) = next.and_then(|child| self.leaf(octant, ray, child, limit, stack, stats)) {
+            let run = self.triangles.get(first as usize..(first + count) as usize).unwrap_or_default();
+            for (index, triangle) in (first..).zip(run) {
+                if index != skip {
+                    stats.triangle();
+                    match visit(index, triangle) {
+                        Some(nearer) => limit = nearer,
                         None => return,
                     }
                 }
             }
+            next = waiting::<K>(stack, limit);
+        }
+    }
+
+    /// The first leaf at or below `child`, or below what waits, that the ray enters before the limit: its first triangle
+    /// and their count. One copy an octant, of the descent alone: it is most of the work and little code.
+    #[inline(always)]
+    fn leaf(
+        &self,
+        octant: usize,
+        ray: &K::Ray,
+        child: u32,
+        limit: K::Distance,
+        stack: &mut Stack<K>,
+        stats: &mut impl Stats,
+    ) -> Option<(u32, u32)> {
+        match octant {
+            0 => self.leaf_in::<0>(ray, child, limit, stack, stats),
+            1 => self.leaf_in::<1>(ray, child, limit, stack, stats),
+            2 => self.leaf_in::<2>(ray, child, limit, stack, stats),
+            3 => self.leaf_in::<3>(ray, child, limit, stack, stats),
+            4 => self.leaf_in::<4>(ray, child, limit, stack, stats),
+            5 => self.leaf_in::<5>(ray, child, limit, stack, stats),
+            6 => self.leaf_in::<6>(ray, child, limit, stack, stats),
+            _ => self.leaf_in::<7>(ray, child, limit, stack, stats),
+        }
+    }
+
+    #[inline(never)]
+    fn leaf_in<const OCTANT: usize>(
+        &self,
+        ray: &K::Ray,
+        mut child: u32,
+        limit: K::Distance,
+        stack: &mut Stack<K>,
+        stats: &mut impl Stats,
+    ) -> Option<(u32, u32)> {
+        loop {
+            let index = match Child::unpack(child) {
+                Child::Leaf { first, count } => return Some((first, count)),
+                Child::Node(index) => index,
+            };
+            // A checked scene has the node; an end without it is what a traversal of nothing is.
+            let node = self.nodes.get(index as usize)?;
+            stats.boxes(2);
+            let [first, second] = K::children(node);
+            child = match K::enter::<OCTANT>(ray, node, limit) {
+                [Some(a), Some(b)] => {
+                    let (near, far) = if b < a { (second, (first, a)) } else { (first, (second, b)) };
+                    // A checked tree is no deeper than the stack.
+                    let _ = stack.push(far);
+                    near
+                }
+                [Some(_), None] => first,
+                [None, Some(_)] => second,
+                [None, None] => waiting::<K>(stack, limit)?,
+            };
         }
     }
 }
 
 /// The next subtree that may hold something before the limit.
 #[inline(always)]
-fn next<K: Kernel>(stack: &mut Stack<K>, limit: K::Distance) -> Option<u32> {
+fn waiting<K: Kernel>(stack: &mut Stack<K>, limit: K::Distance) -> Option<u32> {
     while let Some((waiting, entry)) = stack.pop() {
         if K::within(entry, limit) {
             return Some(waiting);

@@ -65,6 +65,17 @@ impl Bounds {
 /// No primitive: the value of `skip` for a ray that starts on none, and of an id where nothing was hit.
 pub const NONE: u32 = u32::MAX;
 
+/// Every octant: planes are then chosen by comparing the distances to them.
+pub const ANY_OCTANT: usize = 8;
+
+/// The octant of a direction; see [`Kernel::octant`].
+#[inline(always)]
+#[must_use]
+pub fn octant<T: Word>(direction: Triple<T>) -> usize {
+    let [x, y, z] = direction.map(|c| usize::from(c < T::ZERO));
+    z << 2 | y << 1 | x
+}
+
 /// What a hit is made of, for shading.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface<S: Space> {
@@ -155,11 +166,18 @@ pub trait Kernel: Copy + Debug + Default + Send + Sync + 'static {
 
     /// The primitive that a ray starts on, or [`NONE`].
     fn skip(ray: &Self::Ray) -> u32;
+    /// Which way a ray goes: bit a is set where it moves down along axis a. Below 8.
+    fn octant(ray: &Self::Ray) -> usize;
     /// The distance beyond which nothing counts.
     fn reach(ray: &Self::Ray) -> Self::Distance;
-    /// Where a ray enters each child of a node, if it does before `limit`. Conservative: a child that holds a
-    /// triangle whose hit is not beyond `limit` is never left out.
-    fn enter(ray: &Self::Ray, node: &Self::Node, limit: Self::Distance) -> [Option<Self::Distance>; 2];
+    /// Where a ray of an octant (or [`ANY_OCTANT`]) enters each child of a node, if it does before `limit`. Conservative: a child that holds a
+    /// triangle whose hit is not beyond `limit` is never left out. The octant is a constant, so that near and far planes
+    /// are chosen when the code is compiled.
+    fn enter<const OCTANT: usize>(
+        ray: &Self::Ray,
+        node: &Self::Node,
+        limit: Self::Distance,
+    ) -> [Option<Self::Distance>; 2];
     /// Where a ray hits a triangle, if it does within its reach. Edges belong to both neighbours.
     fn intersect(ray: &Self::Ray, triangle: &Self::Triangle) -> Option<Self::Depth>;
     /// A limit for [`Kernel::enter`] that leaves out nothing at or before `depth`.

@@ -10,7 +10,7 @@
 //! What a limit leaves out is another matter: it comes from the computed t of another hit, and no padding covers a
 //! sliver's.
 
-use core_rt::kernel::Bounds;
+use core_rt::kernel::{ANY_OCTANT, Bounds};
 use core_rt::num::Triple;
 
 use crate::format::Format;
@@ -40,19 +40,19 @@ pub(crate) fn limit<F: Real>(t: F) -> F {
 
 /// Where the ray enters each child, if it does before the limit.
 #[inline(always)]
-pub(crate) fn enter<F: Format>(ray: &Ray<F>, node: &F::Node, limit: F) -> [Option<F>; 2] {
+pub(crate) fn enter<F: Format, const OCTANT: usize>(ray: &Ray<F>, node: &F::Node, limit: F) -> [Option<F>; 2] {
     let [first, second] = node.planes();
-    [slab(ray, first, limit), slab(ray, second, limit)]
+    [slab::<_, OCTANT>(ray, first, limit), slab::<_, OCTANT>(ray, second, limit)]
 }
 
 /// A ray that does not move along an axis has an infinite reciprocal, and in a plane of the box the product is not a
 /// number; every comparison with it is false, which leaves the plane out of account. Leaving as soon as an axis decides
 /// is what makes soft float bearable.
 #[inline(always)]
-fn slab<F: Real>(ray: &Ray<F>, planes: &[Triple<F>; 2], limit: F) -> Option<F> {
+fn slab<F: Real, const OCTANT: usize>(ray: &Ray<F>, planes: &[Triple<F>; 2], limit: F) -> Option<F> {
     let (mut entry, mut exit) = (F::ZERO, limit);
     for axis in [0, 1, 2] {
-        let negative = ray.negative[axis];
+        let negative = if OCTANT == ANY_OCTANT { ray.negative[axis] } else { OCTANT >> axis & 1 != 0 };
         let near = (planes[usize::from(negative)][axis] - ray.origin[axis]) * ray.entering[axis];
         let far = (planes[usize::from(!negative)][axis] - ray.origin[axis]) * ray.leaving[axis];
         if near > entry {
@@ -79,7 +79,7 @@ mod tests {
     fn hit(origin: Triple<f32>, direction: Triple<f32>, limit: f32) -> Option<f32> {
         let ray = Ray::new(origin, direction, f32::INFINITY, NONE).unwrap();
         let node = pack::<f32>([UNIT; 2], [0; 2]);
-        let [first, second] = enter(&ray, &node, limit);
+        let [first, second] = enter::<_, ANY_OCTANT>(&ray, &node, limit);
         assert_eq!(first, second);
         first
     }
@@ -125,9 +125,9 @@ mod tests {
             let origin = [0, 1, 2].map(|axis: usize| (point[axis] - steps * direction[axis]) as f32);
             let Some(ray) = Ray::new(origin, direction.map(|c| c as f32), f32::INFINITY, NONE) else { continue };
             let node = pack::<f32>([Bounds { low: point, high: point }; 2], [0; 2]);
-            assert!(enter(&ray, &node, f32::INFINITY)[0].is_some(), "{point:?} {direction:?} {steps}");
+            assert!(enter::<_, ANY_OCTANT>(&ray, &node, f32::INFINITY)[0].is_some(), "{point:?} {direction:?} {steps}");
             let bare = Ray { leaving: ray.entering, ..ray };
-            unpadded += u32::from(enter(&bare, &node, f32::INFINITY)[0].is_none());
+            unpadded += u32::from(enter::<_, ANY_OCTANT>(&bare, &node, f32::INFINITY)[0].is_none());
         }
         assert!(unpadded > 1000, "without padding only {unpadded} were lost: the test has no teeth");
     }

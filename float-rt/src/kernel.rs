@@ -105,13 +105,19 @@ impl<F: Format> Kernel for Float<F> {
     }
 
     #[inline]
+    fn octant(ray: &Ray<F>) -> usize {
+        let [x, y, z] = ray.negative.map(usize::from);
+        z << 2 | y << 1 | x
+    }
+
+    #[inline]
     fn reach(ray: &Ray<F>) -> F {
         boxes::limit(ray.reach)
     }
 
     #[inline]
-    fn enter(ray: &Ray<F>, node: &F::Node, limit: F) -> [Option<F>; 2] {
-        boxes::enter(ray, node, limit)
+    fn enter<const OCTANT: usize>(ray: &Ray<F>, node: &F::Node, limit: F) -> [Option<F>; 2] {
+        boxes::enter::<_, OCTANT>(ray, node, limit)
     }
 
     #[inline]

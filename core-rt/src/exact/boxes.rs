@@ -13,11 +13,9 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 use super::ray::Ray;
 use super::width::{Reciprocal, Width};
-use crate::kernel::Bounds;
+use crate::kernel::{ANY_OCTANT, Bounds};
 use crate::num::Word;
 use crate::record::Record;
-
-type Plane<W> = <<W as Width>::Node as BoxNode>::Plane;
 
 /// Two child boxes: child, low or high (plus one), axis.
 pub(super) type Planes<P> = [[[P; 3]; 2]; 2];
@@ -89,27 +87,35 @@ pub(super) fn unpack<W: Width>(node: &W::Node) -> [Bounds; 2] {
 
 /// Where the ray enters each child, if it does before the limit.
 #[inline(always)]
-pub(super) fn enter<W: Width>(ray: &Ray<W>, node: &W::Node, limit: W::Word) -> [Option<W::Word>; 2] {
+pub(super) fn enter<W: Width, const OCTANT: usize>(
+    ray: &Ray<W>,
+    node: &W::Node,
+    limit: W::Word,
+) -> [Option<W::Word>; 2] {
+    let along = |axis: usize, plane: W::Word| ray.reciprocal[axis].along(plane - ray.origin[axis]);
     let [first, second] = node.planes();
-    [slab(ray, first, limit), slab(ray, second, limit)]
+    [slab::<OCTANT, _, _>(first, limit, W::SLACK, along), slab::<OCTANT, _, _>(second, limit, W::SLACK, along)]
 }
 
+/// Where a ray of an octant enters a box, if it does before the limit; `along` says at which distance it crosses a plane.
 #[inline(always)]
-fn slab<W: Width>(ray: &Ray<W>, planes: &[[Plane<W>; 3]; 2], limit: W::Word) -> Option<W::Word> {
-    let [x, y, z] = [axis(ray, planes, 0), axis(ray, planes, 1), axis(ray, planes, 2)];
+pub(crate) fn slab<const OCTANT: usize, T: Word, P: Copy + Into<T>>(
+    planes: &[[P; 3]; 2],
+    limit: T,
+    slack: T,
+    along: impl Fn(usize, T) -> T,
+) -> Option<T> {
+    let crossed = |axis: usize| {
+        let (a, b) = (along(axis, planes[0][axis].into()), along(axis, planes[1][axis].into()));
+        match OCTANT {
+            ANY_OCTANT => (a.min(b), a.max(b)),
+            _ if OCTANT >> axis & 1 == 0 => (a, b),
+            _ => (b, a),
+        }
+    };
+    let [x, y, z] = [crossed(0), crossed(1), crossed(2)];
     // Not clamped to 0: where the ray starts inside, a negative entry is as good a lower bound.
     let entry = x.0.max(y.0).max(z.0);
-    let exit = x.1.min(y.1).min(z.1).min(limit) + W::SLACK;
-    (entry <= exit && exit >= W::Word::ZERO).then_some(entry)
-}
-
-/// Entry and exit along one axis: the nearer and the farther of the two planes. Comparing what comes out costs less than
-/// choosing what goes in, by the direction's sign, would.
-#[inline(always)]
-fn axis<W: Width>(ray: &Ray<W>, planes: &[[Plane<W>; 3]; 2], axis: usize) -> (W::Word, W::Word) {
-    let [low, high] = planes;
-    let (origin, reciprocal) = (ray.origin[axis], ray.reciprocal[axis]);
-    let (low, high): (W::Word, W::Word) = (low[axis].into(), high[axis].into());
-    let (a, b) = (reciprocal.along(low - origin), reciprocal.along(high - origin));
-    (a.min(b), a.max(b))
+    let exit = x.1.min(y.1).min(z.1).min(limit) + slack;
+    (entry <= exit && exit >= T::ZERO).then_some(entry)
 }

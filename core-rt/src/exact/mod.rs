@@ -29,7 +29,7 @@ use core::marker::PhantomData;
 
 use crate::arithmetic::{Arithmetic, Knobs};
 use crate::camera::Camera;
-use crate::kernel::{Bounds, Kernel, NONE, Surface, Vertices};
+use crate::kernel::{Bounds, Kernel, NONE, Surface, Vertices, octant};
 use crate::num::{Triple, Word};
 use crate::space::Space;
 
@@ -121,13 +121,18 @@ impl<W: Width> Kernel for Exact<W> {
     }
 
     #[inline(always)]
+    fn octant(ray: &Ray<W>) -> usize {
+        octant(ray.direction)
+    }
+
+    #[inline(always)]
     fn reach(ray: &Ray<W>) -> W::Word {
         ray.reach_limit()
     }
 
     #[inline(always)]
-    fn enter(ray: &Ray<W>, node: &Self::Node, limit: W::Word) -> [Option<W::Word>; 2] {
-        boxes::enter(ray, node, limit)
+    fn enter<const OCTANT: usize>(ray: &Ray<W>, node: &Self::Node, limit: W::Word) -> [Option<W::Word>; 2] {
+        boxes::enter::<W, OCTANT>(ray, node, limit)
     }
 
     #[inline(always)]

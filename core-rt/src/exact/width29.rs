@@ -41,7 +41,7 @@ impl Reciprocal for Reciprocal29 {
     #[inline]
     fn new(component: i64) -> Self {
         // For 0 and 1 the largest word: low by one part in 2^63.
-        let quotient = (1u64 << 63) / (component.unsigned_abs() | u64::from(component == 0));
+        let quotient = (1u64 << 63) / component.unsigned_abs().max(1);
         let magnitude = quotient.min(i64::MAX as u64) as i64;
         Self(if component < 0 { -magnitude } else { magnitude })
     }
@@ -87,12 +87,13 @@ impl Width for Width29 {
         wide_product(a.0, b.1).cmp(&wide_product(b.0, a.1))
     }
 
-    /// With the denominator scaled to 32 bits, the numerator is at most 2^31 (t <= 1/2), and 2^62 in Q31.
+    /// With the denominator scaled to 32 bits, the numerator is at most 2^31 (t <= 1/2), and 2^62 in Q31. `max` says here
+    /// and below that a denominator is not 0: the compiler cannot know, and would link a panic.
     #[inline]
     fn depth(numerator: i128, denominator: i128) -> i64 {
         let bits = i128::BITS - denominator.leading_zeros();
         let scaled = |value: i128| if bits > 32 { value >> (bits - 32) } else { value << (32 - bits) } as u64;
-        ((scaled(numerator) << Self::T_BITS) / scaled(denominator)) as i64
+        ((scaled(numerator) << Self::T_BITS) / scaled(denominator).max(1)) as i64
     }
 
     /// As [`Width::depth`], in Q30: the numerator is at most the denominator, so below 2^62 in Q30. Both are
@@ -101,7 +102,7 @@ impl Width for Width29 {
     fn fraction(numerator: i128, denominator: i128) -> <Grid29 as Space>::Fraction {
         let bits = i128::BITS - denominator.leading_zeros();
         let scaled = |value: i128| if bits > 32 { value >> (bits - 32) } else { value << (32 - bits) } as u64;
-        let fraction = ((scaled(numerator) << 30) / scaled(denominator)).min(1 << 30);
+        let fraction = ((scaled(numerator) << 30) / scaled(denominator).max(1)).min(1 << 30);
         <Grid29 as Space>::Fraction::from_bits(fraction as i32)
     }
 
@@ -111,7 +112,7 @@ impl Width for Width29 {
         let bits = i128::BITS - denominator.leading_zeros();
         let scaled = |value: i128| if bits > 64 { value >> (bits - 64) } else { value } as u128;
         // t <= 1/2: the numerator is at most 2^63 here, and 2^125 shifted.
-        let t_q62 = ((scaled(numerator) << 62) / scaled(denominator)) as i128;
+        let t_q62 = ((scaled(numerator) << 62) / scaled(denominator).max(1)) as i128;
         let moved = |origin: i64, direction: i64| {
             let offset_q62 = i128::from(direction) * t_q62; // at most 2^31 * 2^61
             (origin << POINT_BITS) + ((offset_q62 + (1 << (61 - POINT_BITS))) >> (62 - POINT_BITS)) as i64
