@@ -171,8 +171,8 @@ pub trait Kernel: Copy + Debug + Default + Send + Sync + 'static {
     /// The distance beyond which nothing counts.
     fn reach(ray: &Self::Ray) -> Self::Distance;
     /// Where a ray of an octant (or [`ANY_OCTANT`]) enters each child of a node, if it does before `limit`. Conservative: a child that holds a
-    /// triangle whose hit is not beyond `limit` is never left out. The octant is a constant, so that near and far planes
-    /// are chosen when the code is compiled.
+    /// triangle whose hit is not beyond `limit` is never left out, but for `hanika-c` and `hanika-cd`, which reproduce a
+    /// test that does. The octant is a constant, so that near and far planes are chosen when the code is compiled.
     fn enter<const OCTANT: usize>(
         ray: &Self::Ray,
         node: &Self::Node,

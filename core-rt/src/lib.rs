@@ -11,7 +11,8 @@
 //!
 //! # Kernels
 //! A [`kernel::Kernel`] is a space with its records, its box test and its triangle test. [`exact`] has
-//! those whose every decision is exact. [`arithmetic`] is what a kernel leaves to the scene.
+//! those whose every decision is exact, [`hanika`] those of the 2009 report. [`arithmetic`] is what a kernel leaves to the
+//! scene.
 //!
 //! # Tracing
 //! [`camera`] rays go through the [`bvh`], hits are shaded, and [`render`] brings tiles to a sink. A
@@ -25,6 +26,7 @@ pub mod bvh;
 pub mod camera;
 pub mod colour;
 pub mod exact;
+pub mod hanika;
 pub mod kernel;
 pub mod num;
 pub mod profile;

@@ -8,7 +8,7 @@ pub(crate) mod grid14;
 pub(crate) mod grid29;
 
 pub use grid14::Grid14;
-pub use grid29::Grid29;
+pub use grid29::{Grid29, GridQ31};
 
 use core::fmt::Debug;
 

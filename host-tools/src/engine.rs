@@ -3,7 +3,8 @@
 use std::marker::PhantomData;
 
 use core_rt::blob::{BlobError, Header};
-use core_rt::exact::{Exact14, Exact29};
+use core_rt::exact::{Exact14, Exact20, Exact29};
+use core_rt::hanika::{HanikaC, HanikaCd, HanikaCons};
 use core_rt::kernel::Kernel;
 use core_rt::profile::Full;
 use core_rt::scene::Scene;
@@ -91,9 +92,13 @@ impl<K: Kernel> Engine for Of<K> {
 }
 
 /// All kernels, the default of `render` first.
-pub const ENGINES: [&dyn Engine; 4] = [
+pub const ENGINES: [&dyn Engine; 8] = [
     &Of::<Exact29>(PhantomData),
+    &Of::<Exact20>(PhantomData),
     &Of::<Exact14>(PhantomData),
+    &Of::<HanikaC>(PhantomData),
+    &Of::<HanikaCd>(PhantomData),
+    &Of::<HanikaCons>(PhantomData),
     &Of::<Float32>(PhantomData),
     &Of::<Float64>(PhantomData),
 ];

@@ -4,7 +4,7 @@
 //! The targets themselves (`fuzz/`) need nightly; `tests/fuzz_corpus.rs` runs the same functions
 //! over their corpora on stable.
 
-use core_rt::exact::{Exact14, Exact29};
+use core_rt::exact::{Exact14, Exact20, Exact29};
 use core_rt::kernel::Kernel;
 use core_rt::profile::Full;
 use core_rt::scene::Scene;
@@ -38,6 +38,7 @@ pub fn scene_toml(data: &[u8]) {
 /// If the check or the renderer does, or the renderer looks at a node twice.
 pub fn blob(data: &[u8]) {
     blob_of::<Exact14>(data);
+    blob_of::<Exact20>(data);
     blob_of::<Exact29>(data);
 }
 

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use core_rt::bvh::{Intersect, Waiting};
-use core_rt::exact::{Exact14, Exact29};
+use core_rt::exact::{Exact14, Exact20, Exact29};
 use core_rt::kernel::Kernel;
 use core_rt::profile::Full;
 use core_rt::scene::{MAX_DEPTH, Scene};
@@ -50,7 +50,7 @@ fn line<K: Kernel>(model: &Model) -> String {
 #[test]
 fn camera_rays_take_the_tests_that_were_written_down() {
     let model = bench();
-    let found = line::<Exact14>(&model) + &line::<Exact29>(&model);
+    let found = line::<Exact14>(&model) + &line::<Exact20>(&model) + &line::<Exact29>(&model);
     let path = root().join("tests/goldens/bench-1k.txt");
     if std::env::var_os("INTRAY_BLESS").is_some() {
         std::fs::write(&path, &found).expect("a golden can be written");

@@ -2,7 +2,7 @@
 //! as a fraction, for rays of every adversarial kind.
 
 use core_rt::bvh::{Bvh, Intersect};
-use core_rt::exact::{Exact, Ray, Width, Width14, Width29};
+use core_rt::exact::{Exact, Ray, Width, Width14, Width20, Width29};
 use core_rt::kernel::{Kernel, NONE, Vertices};
 use core_rt::num::Word;
 use core_rt::scene::MAX_DEPTH;
@@ -151,13 +151,14 @@ where
     assert!(hits * 20 > count, "{name}: only {hits} of {count} rays hit anything, so little was compared");
 }
 
-fn small<W>()
+fn small<W>(rays: usize)
 where
     W: Width<Word: Into<i64>, Wide: Into<i128>>,
 {
     let meshes = meshes::all(W::GRID_BITS);
-    // A million over all meshes and leaf sizes.
-    let count = 1_000_000 * tests::effort() / (3 * meshes.len()) + 1;
+    // Over all meshes and leaf sizes.
+    let rays = if tests::effort() > 1 { 10_000_000 } else { rays };
+    let count = rays / (3 * meshes.len()) + 1;
     for (seed, (name, triangles)) in (1..).zip(&meshes) {
         for leaf_max in [1, 8, 64] {
             compare::<W>(name, triangles, leaf_max, count, seed * 100 + u64::from(leaf_max));
@@ -167,12 +168,17 @@ where
 
 #[test]
 fn exact14_over_small_scenes() {
-    small::<Width14>();
+    small::<Width14>(1_000_000);
+}
+
+#[test]
+fn exact20_over_small_scenes() {
+    small::<Width20>(300_000);
 }
 
 #[test]
 fn exact29_over_small_scenes() {
-    small::<Width29>();
+    small::<Width29>(1_000_000);
 }
 
 /// The long run takes 100,000 rays, the short one a tenth.
@@ -194,6 +200,11 @@ where
 #[test]
 fn exact14_over_large_scenes() {
     large::<Width14>();
+}
+
+#[test]
+fn exact20_over_large_scenes() {
+    large::<Width20>();
 }
 
 #[test]

@@ -2,9 +2,9 @@
 //! integers. One table holds all tolerances; an entry that is too generous fails as stale.
 
 use core_rt::colour::{Colour, Rgb16, Transfer};
-use core_rt::exact::{Exact, Ray, Reciprocal, Width, Width14, Width29};
-use core_rt::kernel::{Bounds, Kernel, NONE};
-use core_rt::num::Word;
+use core_rt::exact::{Exact, Ray, Reciprocal, Width, Width14, Width20, Width29};
+use core_rt::kernel::{ANY_OCTANT, Bounds, Kernel, NONE};
+use core_rt::num::{Word, cross, sub};
 use core_rt::space::{Grid14, Grid29, Space};
 use ethnum::U256;
 use fixed::types::U16F16;
@@ -14,14 +14,17 @@ use tests::rays::{self, Rays};
 
 /// The largest error of each operation, in the unit that its name gives. What is measured must be at most this, and at
 /// least a quarter of it.
-const TOLERANCES: [(&str, f64); 8] = [
+const TOLERANCES: [(&str, f64); 11] = [
     ("exact14 normalise, 2^-14", 3.0),
     ("exact29 normalise, 2^-30", 3.0),
     ("exact14 depth, 2^-13", 8.0),
+    ("exact20 depth, 2^-41", 2048.0),
     ("exact29 depth, 2^-31", 4.0),
     ("exact14 fraction, 2^-14", 4.0),
+    ("exact20 fraction, 2^-30", 2.0),
     ("exact29 fraction, 2^-30", 2.0),
     ("exact14 point, grid units", 0.28125),
+    ("exact20 point, grid units", 0.00390625),
     ("exact29 point, grid units", 0.00390625),
 ];
 
@@ -184,6 +187,32 @@ fn resolved_hits_of_exact29() {
     within_tolerance("exact29 point, grid units", point);
 }
 
+#[test]
+fn resolved_hits_of_exact20() {
+    let q8 = |p: [i64; 3]| p.map(|c| c as f64 / 256.0);
+    let [depth, fraction, point] = resolved::<Width20>(|f| f.to_num(), 30, q8);
+    within_tolerance("exact20 depth, 2^-41", depth);
+    within_tolerance("exact20 fraction, 2^-30", fraction);
+    within_tolerance("exact20 point, grid units", point);
+}
+
+/// Entering the boxes of a node as the ray's octant does; every octant must say the same.
+fn enter<W: Width>(ray: &Ray<W>, node: &<Exact<W> as Kernel>::Node, limit: W::Word) -> [Option<W::Word>; 2] {
+    let any = Exact::<W>::enter::<ANY_OCTANT>(ray, node, limit);
+    let chosen = match Exact::<W>::octant(ray) {
+        0 => Exact::<W>::enter::<0>(ray, node, limit),
+        1 => Exact::<W>::enter::<1>(ray, node, limit),
+        2 => Exact::<W>::enter::<2>(ray, node, limit),
+        3 => Exact::<W>::enter::<3>(ray, node, limit),
+        4 => Exact::<W>::enter::<4>(ray, node, limit),
+        5 => Exact::<W>::enter::<5>(ray, node, limit),
+        6 => Exact::<W>::enter::<6>(ray, node, limit),
+        _ => Exact::<W>::enter::<7>(ray, node, limit),
+    };
+    assert_eq!(any, chosen, "{ray:?}");
+    any
+}
+
 /// A hit's box is always entered, even with the hit itself as the limit.
 fn no_false_miss<W>()
 where
@@ -195,7 +224,7 @@ where
         let node = Exact::<W>::node([bounds; 2], [0; 2]);
         let depth = Exact::<W>::intersect(ray, triangle).expect("a hit");
         for limit in [Exact::<W>::limit(&depth), Exact::<W>::reach(ray)] {
-            let [first, second] = Exact::<W>::enter(ray, &node, limit);
+            let [first, second] = enter::<W>(ray, &node, limit);
             assert!(first.is_some() && first == second, "{ray:?} misses {bounds:?}");
             assert!(Exact::<W>::within(first.expect("entered"), limit));
         }
@@ -207,6 +236,7 @@ where
 #[test]
 fn no_box_that_is_hit_is_missed() {
     no_false_miss::<Width14>();
+    no_false_miss::<Width20>();
     no_false_miss::<Width29>();
 }
 
@@ -248,6 +278,7 @@ where
 #[test]
 fn reciprocals_are_low_by_less_than_the_slack() {
     reciprocal_bounds::<Width14>(&[-(1 << 15), -1, 0, 1, 2, 4095, 4096, 32767, 1 << 15]);
+    reciprocal_bounds::<Width20>(&[-(1 << 20), -1, 0, 1, 2, (1 << 19) - 1, 1 << 19, (1 << 20) - 1, 1 << 20]);
     reciprocal_bounds::<Width29>(&[-(1 << 29), -1, 0, 1, 2, (1 << 28) - 1, 1 << 28, (1 << 29) - 1, 1 << 29]);
 }
 
@@ -263,6 +294,22 @@ fn exact_sums_at_the_ends() {
             }
         }
     }
+    // Corners of the cube that the budget allows, and directions to the corners of theirs: the largest U, det and tn.
+    let corner = |i: usize| [0, 1, 2].map(|axis| i64::from(Width20::SPAN) * (i >> axis & 1) as i64);
+    let largest_direction = (1i64 << Width20::DIRECTION_BITS) - 1;
+    let mut most = 0;
+    for (i, j, k) in (0..512).map(|n| (n & 7, n >> 3 & 7, n >> 6)) {
+        let (edge, s) = (sub(corner(j), corner(i)), sub(corner(k), corner(i)));
+        for d in 0..8 {
+            let d = [0, 1, 2].map(|axis| if d >> axis & 1 == 0 { largest_direction } else { -largest_direction });
+            let wide = |a: [i64; 3], b: [i64; 3]| (0..3).map(|i| i128::from(a[i]) * i128::from(b[i])).sum::<i128>();
+            for (a, b) in [(edge, cross(s, d)), (d, cross(edge, s)), (s, cross(edge, corner(d[0] as usize & 7)))] {
+                assert_eq!(i128::from(Width20::dot(a, b)), wide(a, b), "{a:?} . {b:?}");
+                most = most.max(wide(a, b).abs());
+            }
+        }
+    }
+    assert!(most > 1 << 62, "the ends were not reached: {most}");
     let largest = 1i64 << 61;
     assert_eq!(Width29::dot([1 << 29; 3], [largest; 3]), 3 * (1i128 << 90));
     assert_eq!(Width29::dot([-(1 << 29); 3], [largest; 3]), -3 * (1i128 << 90));

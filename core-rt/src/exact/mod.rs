@@ -14,6 +14,7 @@ mod resolve;
 mod triangle;
 mod width;
 mod width14;
+mod width20;
 mod width29;
 
 pub(crate) use boxes::slab;
@@ -22,6 +23,7 @@ pub use ray::Ray;
 pub use triangle::{Depth, TriangleRecord};
 pub use width::{Reciprocal, Wide, Width};
 pub use width14::Width14;
+pub use width20::Width20;
 pub use width29::Width29;
 
 use core::cmp::Ordering;
@@ -39,6 +41,9 @@ pub struct Exact<W>(PhantomData<W>);
 
 /// 14-bit grid (15 where the camera is inside the scene), 32-bit hot path: for a Cortex-M0 and small pictures.
 pub type Exact14 = Exact<Width14>;
+
+/// 20-bit grid, everything in 64 bits: for 64-bit hosts in a hurry.
+pub type Exact20 = Exact<Width20>;
 
 /// 29-bit grid, 64-bit hot path: for hosts, and the best picture.
 pub type Exact29 = Exact<Width29>;

@@ -20,7 +20,7 @@ use core::cmp::Ordering;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 use super::ray::Ray;
-use super::width::Width;
+use super::width::{Wide, Width};
 use crate::kernel::Vertices;
 use crate::num::{Triple, Word, bits, cross, dot, sub};
 
@@ -127,19 +127,31 @@ fn sign<T: Word>(value: T, error: T) -> (bool, bool) {
 /// The hit, if there is one with 0 < t within the ray's reach.
 #[inline(always)]
 pub(super) fn intersect<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> Option<Depth<W>> {
-    let (shift, _) = W::split_meta(triangle.meta());
     let s: Triple<W::Word> = sub(ray.origin, triangle.v0());
     let r = cross(s, ray.direction);
-    let q = r.map(|c| c >> shift);
     let (e1, e2): (Triple<W::Word>, Triple<W::Word>) = (triangle.e1(), triangle.e2());
+    let inside = if W::FILTERED { filtered(ray, triangle, e1, e2, r) } else { inside::<W>(ray, e1, e2, r) };
+    if inside { depth(ray, s, e1, e2) } else { None }
+}
 
+/// Whether the line through the ray meets the triangle, by the filter where that decides.
+#[inline(always)]
+fn filtered<W: Width>(
+    ray: &Ray<W>,
+    triangle: &TriangleRecord<W::Short>,
+    e1: Triple<W::Word>,
+    e2: Triple<W::Word>,
+    r: Triple<W::Word>,
+) -> bool {
+    let (shift, _) = W::split_meta(triangle.meta());
+    let q = r.map(|c| c >> shift);
     let edge_error = (W::Word::ONE + W::Word::ONE + W::Word::ONE) << shift;
     let u = dot(e2, q);
     let v = -dot(e1, q);
     let (u_positive, u_negative) = sign(u, edge_error);
     let (v_positive, v_negative) = sign(v, edge_error);
     if (u_positive && v_negative) || (u_negative && v_positive) {
-        return None;
+        return false;
     }
 
     // b - k = min(b, NORMAL_BITS - b), and b <= GRID_BITS <= NORMAL_BITS.
@@ -149,26 +161,32 @@ pub(super) fn intersect<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Sho
     let w = det.wrapping_sub(u).wrapping_sub(v);
     let (w_positive, w_negative) = sign(w, det_error + edge_error + edge_error);
     if (w_positive && (u_negative || v_negative)) || (w_negative && (u_positive || v_positive)) {
-        return None;
+        return false;
     }
 
     let all_positive = u_positive && v_positive && w_positive;
     let all_negative = u_negative && v_negative && w_negative;
-    if !(all_positive || all_negative || inside::<W>(ray, e1, e2, r)) {
-        return None;
-    }
-    depth(ray, s, e1, e2)
+    all_positive || all_negative || undecided(ray, e1, e2, r)
 }
 
-/// Whether the line through the ray meets the triangle, without error. Rare, so kept out of line.
+/// [`inside`], where the filter does not decide. Rare, so kept out of line.
 #[cold]
 #[inline(never)]
+fn undecided<W: Width>(ray: &Ray<W>, e1: Triple<W::Word>, e2: Triple<W::Word>, r: Triple<W::Word>) -> bool {
+    inside::<W>(ray, e1, e2, r)
+}
+
+/// Whether the line through the ray meets the triangle, without error.
+#[inline(always)]
 fn inside<W: Width>(ray: &Ray<W>, e1: Triple<W::Word>, e2: Triple<W::Word>, r: Triple<W::Word>) -> bool {
     let zero = W::Wide::default();
     let u = W::dot(e2, r);
     let v = -W::dot(e1, r);
+    if (u < zero && v > zero) || (u > zero && v < zero) {
+        return false;
+    }
     let det = -W::dot(ray.direction, cross(e1, e2));
-    let w = det - u - v;
+    let w = det.wrapping_sub(u).wrapping_sub(v);
     (u >= zero && v >= zero && w >= zero && det > zero) || (u <= zero && v <= zero && w <= zero && det < zero)
 }
 
@@ -179,11 +197,11 @@ fn depth<W: Width>(ray: &Ray<W>, s: Triple<W::Word>, e1: Triple<W::Word>, e2: Tr
     if numerator <= W::Wide::default() {
         return None;
     }
-    // tn is below 2^47 (2^92) and a reach within -DIRECTION_BITS ..= 3: both shifts have room.
+    // n < d 2^r iff floor(n / 2^r) < d, and n 2^r < d iff n < ceil(d / 2^r): no shift that could overflow.
     let within_reach = match ray.reach {
         None => true,
-        Some(reach @ 0..) => numerator < denominator << reach.unsigned_abs(),
-        Some(reach) => numerator << reach.unsigned_abs() < denominator,
+        Some(reach @ 0..) => numerator >> reach.unsigned_abs() < denominator,
+        Some(reach) => numerator < -(-denominator >> reach.unsigned_abs()),
     };
     within_reach.then(|| Depth { numerator, denominator, t: W::depth(numerator, denominator) })
 }

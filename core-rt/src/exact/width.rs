@@ -2,7 +2,7 @@
 
 use core::cmp::Ordering;
 use core::fmt::Debug;
-use core::ops::{Add, Neg, Shl, Sub};
+use core::ops::{Add, Neg, Shr, Sub};
 
 use super::boxes::BoxNode;
 use crate::kernel::Surface;
@@ -21,13 +21,25 @@ pub trait Wide:
     + Add<Output = Self>
     + Sub<Output = Self>
     + Neg<Output = Self>
-    + Shl<u32, Output = Self>
+    + Shr<u32, Output = Self>
     + 'static
 {
+    /// `self - other` modulo the word, for a difference that is known to fit although its parts do not.
+    fn wrapping_sub(self, other: Self) -> Self;
 }
 
-impl Wide for i64 {}
-impl Wide for i128 {}
+macro_rules! wide {
+    ($wide:ty) => {
+        impl Wide for $wide {
+            #[inline(always)]
+            fn wrapping_sub(self, other: Self) -> Self {
+                self.wrapping_sub(other)
+            }
+        }
+    };
+}
+wide!(i64);
+wide!(i128);
 
 /// The reciprocal of a direction's component, of its sign, and never above the true one in magnitude.
 pub trait Reciprocal: Copy + Debug {
@@ -60,6 +72,9 @@ pub trait Width: Copy + Debug + Default + Send + Sync + 'static {
     const DIRECTION_BITS: u32;
     /// Stored normals are at most 2 to this: `2^(NORMAL_BITS + DIRECTION_BITS) * 3` fits the word.
     const NORMAL_BITS: u32;
+    /// Whether edge functions are decided in the word where their signs are certain, and exactly only elsewhere. Not where
+    /// [`Width::Wide`] is as good as the word.
+    const FILTERED: bool = true;
     /// See [`Kernel::MATERIALS_MAX`](crate::kernel::Kernel::MATERIALS_MAX).
     const MATERIALS_MAX: u32;
     /// Fractional bits of the `t` that boxes and depths are compared in.

@@ -1,15 +1,28 @@
-//! Shading beside a 29-bit grid, in 64 bits: unit vectors and barycentrics in Q30, points in Q8.
+//! Shading beside a 29-bit grid, in 64 bits: points in Q8, unit vectors and barycentrics in Q30 or Q31.
+//!
+//! Q30 holds 1, and what rounding makes of it. Q31 does not: there 1 is `1 - 2^-31`, as in the 2009 report's Table 1, and
+//! what is made saturates.
 
-use fixed::types::{I2F30, U16F16};
+use core::marker::PhantomData;
+
+use fixed::FixedI32;
+use fixed::types::U16F16;
+use fixed::types::extra::{LeEqU32, U30, U31};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 use super::{Space, is_unit_q30};
 use crate::colour::Rgb16;
 use crate::num::{Triple, bits, dot, inverse_sqrt_u64, round_shift, sub};
 
-/// The space of 29-bit grids.
+/// The space of 29-bit grids, with `F` (30 or 31) fractional bits in unit vectors and barycentrics.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Grid29;
+pub struct Grid29With<F>(PhantomData<F>);
+
+/// With Q30: components in [-2, 2).
+pub type Grid29 = Grid29With<U30>;
+
+/// With Q31: components in [-1, 1).
+pub type GridQ31 = Grid29With<U31>;
 
 /// Fractional bits of a point: the grid is subdivided by 256.
 pub(crate) const POINT_BITS: u32 = 8;
@@ -19,12 +32,30 @@ pub(crate) const POINT_BITS: u32 = 8;
 #[repr(C)]
 pub struct Normal29(pub [i32; 3]);
 
-/// `v` with length 1, each component within 2^-28 of true; `None` for zero. Any `v` below 2^62.
+/// What has 30 or 31 fractional bits.
+pub trait Fraction: LeEqU32 + Copy + Default + core::fmt::Debug + Send + Sync + 'static {}
+
+impl Fraction for U30 {}
+impl Fraction for U31 {}
+
+/// The nearest number of the format.
+#[inline]
+fn saturated<F: Fraction>(bits: i64) -> FixedI32<F> {
+    FixedI32::from_bits(bits.clamp(i32::MIN.into(), i32::MAX.into()) as i32)
+}
+
+#[inline]
+fn wide<F: Fraction>(unit: Triple<FixedI32<F>>) -> Triple<i64> {
+    unit.map(|c| c.to_bits().into())
+}
+
+/// `v` with length 1, each component within 2^-28 of true; `None` for zero. Any `v` up to 2^62.
 ///
 /// As in 14 bits: `v` scaled to 31 bits, its squares sum to less than 2^64, [`inverse_sqrt_u64`] has 2^-28.
-/// (v <= 2^31) * (y <= 2^31) fits.
+/// (v <= 2^31) * (y <= 2^31) fits. The error of the square root is one factor for all three: it makes the vector longer or
+/// shorter, and its direction is within 2^-31.
 #[inline]
-pub(crate) fn normalise(v: Triple<i64>) -> Option<Triple<I2F30>> {
+pub(crate) fn normalise<F: Fraction>(v: Triple<i64>) -> Option<Triple<FixedI32<F>>> {
     let bits = bits(v);
     if bits == 0 {
         return None;
@@ -33,14 +64,14 @@ pub(crate) fn normalise(v: Triple<i64>) -> Option<Triple<I2F30>> {
     let square: u64 = v.iter().map(|&c| (c * c) as u64).sum();
     let half_shift = square.leading_zeros() / 2; // 0 or 1: the square is at least 2^60
     let y_q31 = (inverse_sqrt_u64(square << (2 * half_shift)) >> 1) as i64;
-    // v / sqrt(square) = v y 2^half_shift / 2^62; to Q30.
-    Some(v.map(|c| I2F30::from_bits(round_shift(c * y_q31, 32 - half_shift) as i32)))
+    // v / sqrt(square) = v y 2^half_shift / 2^62.
+    Some(v.map(|c| saturated(round_shift(c * y_q31, 62 - F::U32 - half_shift))))
 }
 
-impl Space for Grid29 {
+impl<F: Fraction> Space for Grid29With<F> {
     type Point = Triple<i64>;
-    type Unit = Triple<I2F30>;
-    type Fraction = I2F30;
+    type Unit = Triple<FixedI32<F>>;
+    type Fraction = FixedI32<F>;
     type Colour = Rgb16;
     type Normal = Normal29;
 
@@ -59,7 +90,7 @@ impl Space for Grid29 {
 
     #[inline]
     fn unit_from_q30(unit_q30: Triple<i32>) -> Self::Unit {
-        unit_q30.map(I2F30::from_bits)
+        unit_q30.map(|c| saturated(i64::from(c) << (F::U32 - 30)))
     }
 
     #[inline]
@@ -72,12 +103,12 @@ impl Space for Grid29 {
         normalise(sub(to, from)) // both below 2^39
     }
 
-    /// Weights sum to 1 in Q30 and units are at most 1 in Q30: each sum is at most 2^60.
+    /// Weights sum to 1 and units are at most 1, in Q31 at most: each sum is at most 2^62.
     #[inline]
-    fn interpolate(normals: [Self::Unit; 3], u: I2F30, v: I2F30) -> Option<Self::Unit> {
+    fn interpolate(normals: [Self::Unit; 3], u: FixedI32<F>, v: FixedI32<F>) -> Option<Self::Unit> {
         let (u, v) = (i64::from(u.to_bits()), i64::from(v.to_bits()));
-        let w = (1 << 30) - u - v;
-        let [n0, n1, n2] = normals.map(|n| n.map(|c| i64::from(c.to_bits())));
+        let w = (1 << F::U32) - u - v;
+        let [n0, n1, n2] = normals.map(wide);
         normalise([
             w * n0[0] + u * n1[0] + v * n2[0],
             w * n0[1] + u * n1[1] + v * n2[1],
@@ -87,23 +118,50 @@ impl Space for Grid29 {
 
     #[inline]
     fn negate(unit: Self::Unit) -> Self::Unit {
-        unit.map(|c| -c) // a unit vector's components are in [-1, 1], and Q30 goes to -2
+        wide(unit).map(|c| saturated(-c))
     }
 
     #[inline]
     fn aligned(a: Self::Unit, b: Self::Unit) -> bool {
-        dot_q60(a, b) >= 0
+        dot(wide(a), wide(b)) >= 0
     }
 
+    /// Of units the dot product and its partial sums are at most 1 in Q60 or Q62, and little over 1 by what they are off.
     #[inline]
     fn cosine(a: Self::Unit, b: Self::Unit) -> Option<U16F16> {
-        let cosine_q60 = dot_q60(a, b);
-        (cosine_q60 > 0).then(|| U16F16::from_bits((round_shift(cosine_q60, 44) as u32).min(1 << 16)))
+        let cosine = dot(wide(a), wide(b));
+        (cosine > 0).then(|| U16F16::from_bits((round_shift(cosine, 2 * F::U32 - 16) as u32).min(1 << 16)))
     }
 }
 
-/// At most 3 * 2^60, in practice little over 2^60.
-#[inline]
-fn dot_q60(a: Triple<I2F30>, b: Triple<I2F30>) -> i64 {
-    dot(a.map(|c| i64::from(c.to_bits())), b.map(|c| i64::from(c.to_bits())))
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn q31_saturates_at_one_and_keeps_minus_one() {
+        let axis = |c: i64| GridQ31::towards([0; 3], [c, 0, 0]).unwrap().map(FixedI32::to_bits);
+        for length in [1, 3, 1 << 20, (1 << 38) + 1] {
+            // Within 2^-28, and never beyond the format.
+            assert!(axis(length)[0] >= i32::MAX - 8 && axis(-length)[0] <= i32::MIN + 8, "{length}");
+        }
+        let one = GridQ31::unit_from_q30([1 << 30, 0, -1 << 30]);
+        assert_eq!(one.map(FixedI32::to_bits), [i32::MAX, 0, i32::MIN]);
+        assert_eq!(GridQ31::negate(one).map(FixedI32::to_bits), [-i32::MAX, 0, i32::MAX]);
+    }
+
+    /// The largest sums that interpolation and a cosine can make, where overflow would be trapped.
+    #[test]
+    fn q31_holds_the_largest_sums() {
+        let corner = GridQ31::unit_from_q30([-1 << 30, 0, 0]);
+        let (zero, most) = (FixedI32::from_bits(0), FixedI32::from_bits(i32::MAX));
+        for (u, v) in [(zero, zero), (most, zero), (zero, most)] {
+            let found = GridQ31::interpolate([corner; 3], u, v).unwrap();
+            assert!(found[0].to_bits() <= i32::MIN + 8, "{found:?}");
+        }
+        assert_eq!(GridQ31::cosine(corner, corner), Some(U16F16::ONE));
+        let diagonal = GridQ31::towards([0; 3], [1, 1, 1]).unwrap();
+        assert_eq!(GridQ31::cosine(diagonal, diagonal), Some(U16F16::ONE));
+        assert_eq!(GridQ31::cosine(diagonal, GridQ31::negate(diagonal)), None);
+    }
 }

@@ -1,5 +1,6 @@
 //! `intray inspect`: what is in a scene, and what it takes.
 
+use core_rt::arithmetic::Arithmetic;
 use serde::Serialize;
 
 use super::failure::Failure;
@@ -24,6 +25,8 @@ pub(super) struct Arguments {
 struct Inspection {
     kernel: &'static str,
     grid_bits: u32,
+    /// E, by how many bits edges are shifted to the left; of a kernel that leaves something to the scene.
+    edge_shift: Option<u8>,
     /// Triangles that are rendered.
     triangles: u32,
     /// Triangles of the file that have no area on the grid.
@@ -52,6 +55,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let found = Inspection {
         kernel: scene.engine.name(),
         grid_bits: scene.engine.grid_bits(),
+        // A kernel without knobs has zeros, and the others an epsilon.
+        edge_shift: (header.arithmetic != Arithmetic::default()).then_some(header.arithmetic.edge_shift),
         triangles: counts.triangles,
         degenerate: header.file_triangles.saturating_sub(counts.triangles),
         degenerates: scene.degenerates,
@@ -72,8 +77,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 impl Inspection {
     fn table(&self) -> String {
+        let edge_shift = self.edge_shift.map_or_else(String::new, |shift| format!(", edge shift {shift}"));
         let rows = [
-            ("kernel", format!("{} ({}-bit grid)", self.kernel, self.grid_bits)),
+            ("kernel", format!("{} ({}-bit grid{edge_shift})", self.kernel, self.grid_bits)),
             ("picture", format!("{}x{}", self.width, self.height)),
             ("triangles", format!("{} ({} degenerate ones left out)", self.triangles, self.degenerate)),
             ("tree", format!("{} nodes, {} levels", self.nodes, self.depth)),

@@ -63,7 +63,7 @@ fn largest<K: Kernel>(smooth: bool) -> Draft<K> {
 /// Brings the largest directions that there are into a picture of 9x7 pixels: the view's axis is one of six.
 fn look<K: Kernel>(draft: &mut Draft<K>, view: usize) {
     // The most that the kernel's word holds; see docs/BLOB.md.
-    let fraction_bits = if size_of::<K::Word>() == 4 { 17 } else { 30 };
+    let fraction_bits = if size_of::<K::Word>() == 4 { 17 } else { 61 - K::DIRECTION_BITS };
     let largest = (1i64 << (K::DIRECTION_BITS + fraction_bits)) - (1 << (fraction_bits - 1)) - 1;
     let (ahead, right, down) = (view / 2, (view / 2 + 1) % 3, (view / 2 + 2) % 3);
     let camera = &mut draft.header.camera;

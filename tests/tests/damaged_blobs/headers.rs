@@ -23,7 +23,9 @@ fn broken_headers<K: Kernel>() {
             ("a picture of no height", |d| d.header.size[1] = 0, BlobError::Header),
             ("a picture as wide as can be", |d| d.header.size[0] = u16::MAX, BlobError::Header),
             ("fractional bits beyond any word", |d| d.header.camera.fraction_bits = 255, BlobError::Header),
-            ("more fractional bits than fit", |d| d.header.camera.fraction_bits = 31, BlobError::Header),
+            ("more fractional bits than fit", |d| d.header.camera.fraction_bits = (62 - K::DIRECTION_BITS) as u8, {
+                BlobError::Header
+            }),
             ("fewer fractional bits than there are", |d| d.header.camera.fraction_bits -= 1, BlobError::Header),
             ("a need from the future", |d| d.header.needs = Needs::from_bits(1 << 31), BlobError::Header),
         ],

@@ -19,6 +19,7 @@ use tests::blobs::{Draft, corners, sample};
 macro_rules! for_every_kernel {
     ($($name:ident),* $(,)?) => {
         mod exact14 { $(#[test] fn $name() { super::$name::<core_rt::exact::Exact14>(); })* }
+        mod exact20 { $(#[test] fn $name() { super::$name::<core_rt::exact::Exact20>(); })* }
         mod exact29 { $(#[test] fn $name() { super::$name::<core_rt::exact::Exact29>(); })* }
     };
 }
