@@ -2,25 +2,25 @@
 
 use core::sync::atomic::{AtomicU8, Ordering};
 
-// The logger is found by the linker alone.
-use defmt_semihosting as _;
-use semihosting::process;
-
 use crate::board::Region;
 use crate::status::Status;
+use crate::transport;
 
-/// The status of an end that has begun; 0 before.
-static ENDING: AtomicU8 = AtomicU8::new(0);
+/// No status.
+const NOT_YET: u8 = u8::MAX;
+
+/// The status of an end that has begun.
+static ENDING: AtomicU8 = AtomicU8::new(NOT_YET);
 
 /// Ends the run. What goes wrong while an end is told of does not change its status.
 pub fn end(status: Status, tell: impl FnOnce()) -> ! {
     let begun = ENDING.load(Ordering::Relaxed);
-    if begun != 0 {
-        process::exit(begun.into());
+    if begun != NOT_YET {
+        transport::stop(begun);
     }
     ENDING.store(status as u8, Ordering::Relaxed);
     tell();
-    process::exit(i32::from(status as u8))
+    transport::exit(status)
 }
 
 /// Ends the run because of a fault. `stack_pointer` is that of the code that took it; the caller has a stack again.

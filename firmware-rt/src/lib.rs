@@ -5,8 +5,8 @@
 //! the picture of the nearest [`hits`] is.
 //!
 //! # On the chip
-//! `run` checks the blob where it lies in flash and renders it tile by tile, between the marks of `window`. `wire` takes
-//! frames to the host, `stack` measures, `end` is how every run ends, well or not.
+//! `run` checks the blob where it lies in flash and renders it tile by tile, between the marks of `window`.
+//! `transport` takes log and frames to the host, `stack` measures, `end` is how every run ends, well or not.
 //!
 //! # Building
 //! `build` turns a board into a linker script, and a blob's header into a profile.
@@ -31,6 +31,6 @@ pub mod run;
 #[cfg(target_os = "none")]
 pub mod stack;
 #[cfg(target_os = "none")]
-pub mod window;
+pub mod transport;
 #[cfg(target_os = "none")]
-pub mod wire;
+pub mod window;

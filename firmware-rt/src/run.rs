@@ -8,7 +8,6 @@ use core_rt::profile::Profile;
 use core_rt::render::{Tile, Workspace, render_tile};
 use core_rt::scene::Scene;
 use core_rt::stats::{Counts, NoStats, Stats};
-use semihosting::io::Error;
 use zerocopy::{FromBytes, IntoBytes};
 
 use crate::board::{Board, Region};
@@ -16,7 +15,7 @@ use crate::frame::{Begin, Report, TileHead};
 use crate::hits::{self, Way};
 use crate::refusal::Refusal;
 use crate::status::Status;
-use crate::wire::Wire;
+use crate::transport::{Error, Link, Wire};
 use crate::{stack, window};
 
 /// Pixels a side of a tile.
@@ -86,6 +85,7 @@ fn rendered<F: Firmware, S: Stats>(
     stats: &mut S,
     counts: fn(&S) -> Counts,
 ) -> Status {
+    let link = Link::start();
     let blob = blob(F::BOARD.blob);
     defmt::info!("{=str}: a blob of {=usize} bytes for {=str}", F::BOARD.name, blob.len(), KernelOf::<F>::NAME);
     // Matched by reference: a scene is not small, and the stack would have it twice.
@@ -102,7 +102,7 @@ fn rendered<F: Firmware, S: Stats>(
         defmt::error!("the tree has {=u8} levels, and this firmware is for {=usize}", scene.header.depth, capacity);
         return Status::Storage;
     }
-    match drawn::<F, S>(scene, workspace, stats, counts) {
+    match link.open().and_then(|wire| drawn::<F, S>(scene, wire, workspace, stats, counts)) {
         Ok(()) => Status::Done,
         Err(_) => {
             defmt::error!("the host does not take what is sent");
@@ -120,12 +120,12 @@ fn checked<P: Profile>(blob: &[u8]) -> Result<Scene<'_, P>, BlobError> {
 /// Draws every tile and sends it.
 fn drawn<F: Firmware, S: Stats>(
     scene: &Scene<'_, F::Profile>,
+    mut wire: Wire,
     workspace: &mut Workspace<'_, KernelOf<F>>,
     stats: &mut S,
     counts: fn(&S) -> Counts,
 ) -> Result<(), Error> {
     let [width, height] = scene.header.size;
-    let mut wire = Wire::open()?;
     wire.send(Begin::KIND, &[Begin { width, height }.as_bytes()])?;
     for tile in Tile::of(scene.header.size, [TILE; 2]) {
         let pixels = draw::<F>(scene, tile, workspace, stats);

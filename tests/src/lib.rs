@@ -1,6 +1,7 @@
 //! Oracles and helpers that the tests share. Nothing here calls the code that it checks.
 
 pub mod blobs;
+pub mod boards;
 pub mod fuzz;
 pub mod meshes;
 pub mod oracle;

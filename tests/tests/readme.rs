@@ -1,39 +1,102 @@
-//! The README's picture and figures are what the program makes. `INTRAY_BLESS=1` renews them.
+//! The README's pictures and figures are what the program and the chips make. `INTRAY_BLESS=1` renews them.
+//!
+//! The chips' are skipped, with a line that says so, where they cannot be emulated, or where the compiler is another than
+//! the one that the README names: instructions and sizes are the compiler's.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
 
+use core_rt::stats::Counts;
+use firmware_rt::board::{BOARDS, Board};
 use host_tools::compare::compare;
-use host_tools::engine::ENGINES;
+use host_tools::emulate::counter::Counter;
+use host_tools::emulate::firmware::Wanted;
+use host_tools::emulate::machine::Machine;
+use host_tools::emulate::{self, Run};
+use host_tools::engine::{self, ENGINES};
 use host_tools::import::{self, Embedded};
+use host_tools::model::Model;
 use host_tools::picture::Picture;
 use host_tools::prepare::Options;
 use host_tools::reference::Reference;
+use host_tools::render::Rendered;
 use host_tools::{builtin, files};
 
-const BEGIN: &str = "<!-- generated: figures -->\n";
 const END: &str = "<!-- end of generated -->\n";
+
+/// The README is written by one test at a time.
+static README: Mutex<()> = Mutex::new(());
 
 fn root(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(name)
 }
 
-/// The text with what stands between the marks replaced.
-fn replaced(text: &str, figures: &str) -> Option<String> {
-    let (before, rest) = text.split_once(BEGIN)?;
+/// How a generated part begins.
+fn begin(part: &str) -> String {
+    format!("<!-- generated: {part} -->\n")
+}
+
+/// The text of a generated part.
+fn generated<'a>(text: &'a str, part: &str) -> Option<&'a str> {
+    let (_, rest) = text.split_once(&begin(part))?;
+    Some(rest.split_once(END)?.0)
+}
+
+/// The text with a generated part replaced.
+fn replaced(text: &str, part: &str, figures: &str) -> Option<String> {
+    let begin = begin(part);
+    let (before, rest) = text.split_once(&begin)?;
     let (_, after) = rest.split_once(END)?;
-    Some(format!("{before}{BEGIN}{figures}{END}{after}"))
+    Some(format!("{before}{begin}{figures}{END}{after}"))
+}
+
+fn readme() -> String {
+    String::from_utf8(files::read(&root("README.md")).expect("a README")).expect("it is text")
+}
+
+fn is_blessing() -> bool {
+    std::env::var_os("INTRAY_BLESS").is_some()
+}
+
+/// Checks a generated part of the README, or renews it.
+fn check_part(part: &str, figures: &str, is_same: impl Fn(&str, &str) -> bool) {
+    let _lock = README.lock().expect("whoever had it let it go");
+    let readme = readme();
+    let expected = replaced(&readme, part, figures).expect("the README has the marks");
+    if is_blessing() {
+        files::write_atomically(&root("README.md"), expected.as_bytes()).expect("it can be written");
+    } else {
+        let stored = generated(&readme, part).unwrap_or_default();
+        assert!(is_same(stored, figures), "README.md: INTRAY_BLESS=1 renews the figures\n{stored}\n{figures}");
+    }
+}
+
+/// Checks a picture of the README, or renews it.
+fn check_picture(name: &str, picture: &Picture) {
+    if is_blessing() {
+        picture.write_png(&root(name)).expect("it can be written");
+    }
+    let stored = Picture::read_png(&root(name)).expect("the README's picture");
+    assert!(stored == *picture, "{name} is not what the program renders; INTRAY_BLESS=1 renews it");
+}
+
+fn built_in(size: [u32; 2]) -> Model {
+    let mut model = import::load_from(&Embedded(builtin::FILES), "scene.toml").expect("the built-in scene").model;
+    model.render.size = size;
+    model
 }
 
 #[test]
 fn the_readme_shows_what_the_program_makes() {
-    let mut model = import::load_from(&Embedded(builtin::FILES), "scene.toml").expect("the built-in scene").model;
     let mut table = String::from(
         "| kernel | picture | blob, bytes | over 1 | over 4 | over 64 | PSNR, dB |\n| --- | --- | --- | --- | --- | --- | --- |\n",
     );
     let mut shown = None;
     for size in [[640, 480], [160, 128]] {
-        model.render.size = size;
+        let model = built_in(size);
         let [width, height] = size;
         let (pixels, _) = Reference::new(&model).render(size, &|_| {});
         let truth = Picture::from_fn(width, height, |x, y| pixels[(y * width + x) as usize]);
@@ -52,24 +115,135 @@ fn the_readme_shows_what_the_program_makes() {
         }
     }
 
-    let shown = shown.expect("there are kernels");
-    let readme = String::from_utf8(files::read(&root("README.md")).expect("a README")).expect("it is text");
-    let expected = replaced(&readme, &table).expect("the README has the marks");
-    if std::env::var_os("INTRAY_BLESS").is_some() {
-        files::write_atomically(&root("README.md"), expected.as_bytes()).expect("it can be written");
-        shown.write_png(&root("docs/demo.png")).expect("it can be written");
-    }
-    let stored = Picture::read_png(&root("docs/demo.png")).expect("the README's picture");
-    assert!(stored == shown, "docs/demo.png is not what the program renders; INTRAY_BLESS=1 renews it");
-    assert!(
-        readme == expected || std::env::var_os("INTRAY_BLESS").is_some(),
-        "README.md: INTRAY_BLESS=1 renews the figures"
+    check_part("figures", &table, |stored, found| stored == found);
+    check_picture("docs/demo.png", &shown.expect("there are kernels"));
+}
+
+/// The size of the default firmware's picture.
+const CHIP_SIZE: [u32; 2] = [160, 120];
+
+const LIMIT: Duration = Duration::from_secs(300);
+
+fn compiler() -> String {
+    let output = Command::new("rustc").arg("--version").output().expect("there is a compiler");
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    text.split(' ').take(2).collect::<Vec<_>>().join(" ")
+}
+
+/// The boards, with what counts their instructions; says in one line why there is none.
+fn countable() -> Option<Vec<(&'static Board, Counter)>> {
+    let counter = |board: &'static Board| {
+        emulate::check(board).map_err(|error| error.to_string())?;
+        Ok((board, Counter::provide(&Machine::of(board))?))
+    };
+    let all: Result<_, String> = BOARDS.into_iter().map(counter).collect();
+    all.inspect_err(|reason| println!("skipped the chips' figures: {reason}")).ok()
+}
+
+/// The cell of a row that has the bytes of code, counted from the line's start.
+const CODE: usize = 7;
+
+/// How much code may differ: the panics of crates name their sources, by the path at which cargo keeps them.
+const PATHS: usize = 256;
+
+/// Whether two of the chips' tables are the same, but for what paths do to the size of the code.
+fn is_same_but_for_paths(a: &str, b: &str) -> bool {
+    let is_same_line = |(a, b): (&str, &str)| {
+        let [mut a, mut b] = [a, b].map(|line| line.split('|').map(str::trim).collect::<Vec<_>>());
+        let code = |cells: &[&str]| cells.get(CODE).and_then(|cell| cell.parse::<usize>().ok());
+        if let (Some(x), Some(y)) = (code(&a), code(&b))
+            && x.abs_diff(y) <= PATHS
+        {
+            a[CODE] = "";
+            b[CODE] = "";
+        }
+        a == b
+    };
+    a.lines().count() == b.lines().count() && a.lines().zip(b.lines()).all(is_same_line)
+}
+
+/// A row of the chips' table, and the chip's picture, which is the host's.
+fn row(board: &'static Board, counter: &Counter, kernel: &str, blob: &[u8], host: &Rendered) -> (String, Picture) {
+    let elf = Wanted { board, blob, hits: None, count: false }.provide().expect("it can be built");
+    let begin = Instant::now();
+    let run = Run { board, elf: &elf, blob: Some(blob), counter: Some(counter), limit: LIMIT };
+    let outcome = run.perform(&mut Vec::new()).expect("it goes well");
+    println!("{kernel} on {}: {:.1} s", board.name, begin.elapsed().as_secs_f64());
+    assert!(outcome.picture == host.picture, "{kernel} on {}", board.name);
+    let Counts { primary_rays, shadow_rays, box_tests, triangle_tests } = host.counts;
+    let per_ray = |count: u64| count as f64 / (primary_rays + shadow_rays) as f64;
+    let instructions = outcome.counts.expect("they were counted").instructions;
+    let ram = elf.static_bytes + u64::from(outcome.report.stack_bytes);
+    let row = format!(
+        "| {} | `{kernel}` | {:.0} | {:.1} | {:.1} | {ram} | {} | {} |\n",
+        board.name,
+        per_ray(instructions),
+        per_ray(box_tests),
+        per_ray(triangle_tests),
+        elf.text_bytes,
+        blob.len(),
     );
+    (row, outcome.picture)
+}
+
+#[test]
+fn the_readme_shows_what_the_chips_make() {
+    let Some(boards) = countable() else { return };
+    let [width, height] = CHIP_SIZE;
+    let mut table = format!(
+        "{width}x{height} pixels, firmware by {}.\n\n\
+         | board | kernel | instructions a ray | box tests a ray | triangle tests a ray | RAM, bytes | code, bytes | blob, \
+         bytes |\n| --- | --- | --- | --- | --- | --- | --- | --- |\n",
+        compiler()
+    );
+    let is_other = !generated(&readme(), "chips").expect("the README has the marks").contains(&compiler());
+    if is_other && !is_blessing() {
+        println!("skipped the chips' figures: they are those of another compiler");
+        return;
+    }
+    let model = built_in(CHIP_SIZE);
+    let all: Vec<_> = ["exact14", "exact29", "f32"]
+        .into_iter()
+        .map(|kernel| {
+            let engine = engine::by_name(kernel).expect("a kernel of this name");
+            let blob = engine.prepare(&model, &Options::default()).expect("it fits").blob;
+            let host = engine.render(blob.bytes(), [16, 16], &|_| {}).expect("a blob just made");
+            (kernel, blob, host)
+        })
+        .collect();
+    // Side by side: each board has a process of its own.
+    let all = &all;
+    let made: Vec<(String, Picture)> = std::thread::scope(|scope| {
+        let rows = |(board, counter)| {
+            scope.spawn(move || -> Vec<_> {
+                all.iter().map(|(kernel, blob, host)| row(board, counter, kernel, blob.bytes(), host)).collect()
+            })
+        };
+        let threads: Vec<_> = boards.iter().map(|(board, counter)| rows((*board, counter))).collect();
+        threads.into_iter().flat_map(|thread| thread.join().expect("pictures like the host's")).collect()
+    });
+    table.extend(made.iter().map(|(row, _)| row.as_str()));
+    check_part("chips", &table, is_same_but_for_paths);
+    check_picture("docs/host.png", &all[0].2.picture);
+    check_picture("docs/chip-microbit.png", &made[0].1);
 }
 
 #[test]
 fn marks_are_needed_and_stale_figures_are_seen() {
-    assert_eq!(replaced("no marks", "x"), None);
-    let text = format!("a\n{BEGIN}old\n{END}b\n");
-    assert_eq!(replaced(&text, "new\n").as_deref(), Some(format!("a\n{BEGIN}new\n{END}b\n").as_str()));
+    assert_eq!(replaced("no marks", "x", "y"), None);
+    let text = format!("a\n{}old\n{END}b\n{}other\n{END}", begin("x"), begin("y"));
+    assert_eq!((generated(&text, "x"), generated(&text, "y")), (Some("old\n"), Some("other\n")));
+    let new = format!("a\n{}new\n{END}b\n{}other\n{END}", begin("x"), begin("y"));
+    assert_eq!(replaced(&text, "x", "new\n"), Some(new));
+}
+
+#[test]
+fn other_figures_of_a_chip_are_seen_and_other_paths_are_not() {
+    let row =
+        "| board | kernel | instructions |\n| microbit | `exact14` | 5000 | 22.1 | 7.4 | 4004 | 36276 | 77336 |\n";
+    assert!(is_same_but_for_paths(row, row));
+    assert!(is_same_but_for_paths(row, &row.replace("36276", "36300")));
+    for (old, new) in [("36276", "36800"), ("5000", "5001"), ("4004", "4008"), ("77336", "77344"), ("\n", "\n\n")] {
+        assert!(!is_same_but_for_paths(row, &row.replace(old, new)), "{old}");
+    }
 }

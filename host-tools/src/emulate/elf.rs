@@ -53,8 +53,7 @@ impl Elf {
                 static_bytes += section.size();
             }
         }
-        let mark = |name| Some(file.symbols().find(|symbol| symbol.name() == Ok(name))?.address());
-        let window = mark("intray_window_begin").zip(mark("intray_window_end"));
+        let window = address(&file, "intray_window_begin").zip(address(&file, "intray_window_end"));
         found.window = window.map(|(begin, end)| [begin, end]);
         (found.text_bytes, found.static_bytes, found.blob_bytes) = (text_bytes, static_bytes, blob_bytes);
         Ok(found)
@@ -72,7 +71,18 @@ impl Elf {
         &self.bytes
     }
 
+    /// The address of a symbol.
+    #[must_use]
+    pub fn symbol(&self, name: &str) -> Option<u64> {
+        let file = ElfFile32::<Endianness>::parse(self.bytes.as_slice()).ok()?;
+        address(&file, name)
+    }
+
     pub(super) fn unfit(&self, reason: String) -> EmulateError {
         EmulateError::Elf { path: self.path.clone(), reason }
     }
+}
+
+fn address(file: &ElfFile32<'_, Endianness>, name: &str) -> Option<u64> {
+    Some(file.symbols().find(|symbol| symbol.name() == Ok(name))?.address())
 }

@@ -32,12 +32,30 @@ pub struct Wanted<'a> {
     pub count: bool,
 }
 
-/// Checks that firmware can be built here: that a kernel has one, that the sources and the compiler's library are there.
+/// How firmware reaches the host.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Transport {
+    /// An emulator or a debugger does what it asks for.
+    #[default]
+    Semihosting,
+    /// A probe reads its buffers.
+    Rtt,
+}
+
+/// Checks that firmware can be built here: that the sources and the compiler's library are there.
 ///
 /// # Errors
 /// What is missing.
-pub fn check(board: &'static Board, traits: &Traits) -> Result<(), EmulateError> {
+pub fn check_board(board: &Board) -> Result<(), EmulateError> {
     Repository::find()?;
+    if has_library(board.target) { Ok(()) } else { Err(EmulateError::NoTarget { target: board.target }) }
+}
+
+/// Checks that firmware can be built here for a blob: that its kernel has one, and what [`check_board`] does.
+///
+/// # Errors
+/// What is missing.
+pub fn check(board: &Board, traits: &Traits) -> Result<(), EmulateError> {
     if traits.kernel_path().is_none() {
         let has_firmware = |id| Traits { kernel: id, ..*traits }.kernel_path().is_some();
         let known: Vec<&str> =
@@ -45,36 +63,44 @@ pub fn check(board: &'static Board, traits: &Traits) -> Result<(), EmulateError>
         let kernel = engine::by_id(traits.kernel).map_or("of this blob", |engine| engine.name());
         return Err(EmulateError::NoFirmware { kernel, known: known.join(", ") });
     }
-    if has_library(board.target) { Ok(()) } else { Err(EmulateError::NoTarget { target: board.target }) }
+    check_board(board)
 }
 
 impl Wanted<'_> {
-    /// The firmware, built if need be.
+    /// The firmware for QEMU, built if need be.
     ///
     /// # Errors
     /// Where it cannot be built.
     pub fn provide(&self) -> Result<Elf, EmulateError> {
+        self.provide_over(Transport::Semihosting)
+    }
+
+    /// The firmware that reaches the host in some way, built if need be.
+    ///
+    /// # Errors
+    /// Where it cannot be built.
+    pub fn provide_over(&self, transport: Transport) -> Result<Elf, EmulateError> {
         let damaged = EmulateError::Damaged("the blob has no header");
         let traits = Traits::of(self.blob).ok_or(damaged)?;
         check(self.board, &traits)?;
         let repository = Repository::find()?;
         let folder = repository.target().join("firmware");
         fs::create_dir_all(&folder).map_err(EmulateError::folder)?;
-        let path = folder.join(format!("{}.elf", self.name(&traits)));
+        let path = folder.join(format!("{}.elf", self.name(&traits, transport)));
         let origin_path = path.with_extension("origin");
         // One at a time: cargo has one place for all profiles of a package.
         let lock = File::create(folder.join("lock")).and_then(|file| file.lock().map(|()| file));
         let _lock = lock.map_err(EmulateError::folder)?;
         let origin = origin(repository.root(), self.board.package).map_err(EmulateError::folder)?;
         if !path.is_file() || !fs::read_to_string(&origin_path).is_ok_and(|made_from| made_from == origin) {
-            self.build(&repository, &path)?;
+            self.build(&repository, &path, transport)?;
             files::write_atomically(&origin_path, origin.as_bytes())?;
         }
         Elf::read(&path, self.board)
     }
 
-    /// Board, kernel and profile.
-    fn name(&self, traits: &Traits) -> String {
+    /// Board, kernel, profile and transport.
+    fn name(&self, traits: &Traits, transport: Transport) -> String {
         let kernel = engine::by_id(traits.kernel).map_or("unknown", |engine| engine.name());
         let hits = match self.hits {
             None => "",
@@ -82,10 +108,14 @@ impl Wanted<'_> {
             Some(Way::Tile) => "-tile",
         };
         let count = if self.count { "-count" } else { "" };
-        format!("{}-{kernel}-{:x}-{}{hits}{count}", self.board.name, traits.needs, traits.depth)
+        let transport = match transport {
+            Transport::Semihosting => "",
+            Transport::Rtt => "-rtt",
+        };
+        format!("{}-{kernel}-{:x}-{}{hits}{count}{transport}", self.board.name, traits.needs, traits.depth)
     }
 
-    fn build(&self, repository: &Repository, path: &Path) -> Result<(), EmulateError> {
+    fn build(&self, repository: &Repository, path: &Path, transport: Transport) -> Result<(), EmulateError> {
         let Board { target, package, .. } = *self.board;
         // A name that stays the same from build to build, so that cargo knows what it has.
         let blob = path.with_extension("blob");
@@ -100,7 +130,11 @@ impl Wanted<'_> {
             (HITS_VARIABLE, hits.into()),
             (COUNT_VARIABLE, if self.count { "1" } else { "0" }.into()),
         ];
-        let arguments = ["build", "--package", package, "--bin", package, "--target", target, "--profile", "firmware"];
+        let mut arguments =
+            vec!["build", "--package", package, "--bin", package, "--target", target, "--profile", "firmware"];
+        if transport == Transport::Rtt {
+            arguments.extend(["--features", "rtt"]);
+        }
         repository
             .cargo(&arguments, &variables)
             .map_err(|output| EmulateError::Build { package: package.into(), output })?;

@@ -30,6 +30,15 @@ use log::Log;
 use machine::Machine;
 use process::Process;
 
+/// Checks that a board can be emulated here: that QEMU, the compiler's library and the sources of its firmware are there.
+///
+/// # Errors
+/// What is missing.
+pub fn check(board: &Board) -> Result<(), EmulateError> {
+    Machine::of(board).version()?;
+    firmware::check_board(board)
+}
+
 /// Checks that a blob fits its place in a board's flash; `help` says what would make it smaller.
 ///
 /// # Errors
@@ -48,6 +57,15 @@ pub trait Observer {
     fn log(&mut self, line: &str);
     /// So many more pixels have come.
     fn pixels(&mut self, count: u64);
+}
+
+/// Keeps the log, and nothing else.
+impl Observer for Vec<String> {
+    fn log(&mut self, line: &str) {
+        self.push(line.into());
+    }
+
+    fn pixels(&mut self, _: u64) {}
 }
 
 /// A run.

@@ -8,10 +8,16 @@ use crate::fuzz;
 use crate::qemu::QEMU;
 use crate::steps::Step;
 use crate::task::Task;
-use crate::tool::{CARGO_FUZZ, CLIPPY, IMAGEMAGICK, NIGHTLY, RISCV32IMAC, RUSTFMT, THUMBV6M};
+use crate::tool::{CARGO_FUZZ, CLIPPY, IMAGEMAGICK, NIGHTLY, RISCV32IMAC, RUSTFMT, THUMBV6M, Tool};
 
 /// Seconds of fuzzing a target.
 const FUZZ_SECONDS: u32 = 20;
+
+/// Packages that are for a chip alone, its target, and what checking them takes.
+const FIRMWARE: [(&str, &str, &[Tool]); 2] = [
+    ("firmware-cortexm", "thumbv6m-none-eabi", &[CLIPPY, THUMBV6M]),
+    ("firmware-riscv", "riscv32imac-unknown-none-elf", &[CLIPPY, RISCV32IMAC]),
+];
 
 /// All checks. `long` makes the tests that draw random input draw ten times as much.
 pub(crate) fn steps(long: bool) -> Vec<Step> {
@@ -34,6 +40,19 @@ pub(crate) fn steps(long: bool) -> Vec<Step> {
             ),
         )
         .needing(&[THUMBV6M, RISCV32IMAC]),
+    ];
+    for (package, target, tools) in FIRMWARE {
+        for features in ["", " --features rtt"] {
+            let line = format!("cargo clippy -p {package} --target {target}{features} -- -D warnings");
+            steps.push(Step::new(format!("lints of {package}{features}"), Task::new(&line)).needing(tools));
+        }
+        let line = format!("cargo clippy -p probe --target {target} -- -D warnings");
+        steps.push(Step::new(format!("lints of the probe for {target}"), Task::new(&line)).needing(tools));
+        // As `cargo run` builds it, which must fit too.
+        let line = format!("cargo build -p {package} --target {target}");
+        steps.push(Step::new(format!("{package} for its chip"), Task::new(&line)).needing(tools));
+    }
+    steps.extend([
         Step::new(
             "unit tests, debug",
             test("cargo test -p core-rt -p firmware-rt -p float-rt -p host-tools -p qemu-plugin -p xtask"),
@@ -45,7 +64,7 @@ pub(crate) fn steps(long: bool) -> Vec<Step> {
             .needing(&[QEMU]),
         Step::new("all of tests, optimised and overflow-checked", test("cargo test -p tests --profile checked")),
         Step::new("goldens, release", Task::new("cargo test -p tests --release --test goldens")),
-    ];
+    ]);
     steps.extend(fuzz::steps(FUZZ_SECONDS, &[NIGHTLY, CARGO_FUZZ]));
     steps
 }

@@ -88,11 +88,11 @@ fn perform(verb: Verb) -> Result<(), String> {
         Verb::Bless => run(&[
             Step::new(
                 "new goldens",
-                Task::new("cargo test -p tests --release --test bench_scene --test goldens --test readme")
+                Task::new("cargo test -p tests --release --test bench_scene --test goldens --test machines --test firmware_output --test readme")
                     .with("INTRAY_BLESS", "1"),
             ),
-            Step::new("what changed", Task::new("git --no-pager diff --stat -- tests/goldens README.md docs")),
-            Step::new("what is new", Task::new("git status --short -- tests/goldens README.md docs")),
+            Step::new("what changed", Task::new("git --no-pager diff --stat -- tests/goldens tests/firmware-output README.md docs")),
+            Step::new("what is new", Task::new("git status --short -- tests/goldens tests/firmware-output README.md docs")),
         ])
         .map(drop),
         Verb::DemoScene => demo_scene::write(Path::new("scenes/demo")).map_err(|error| format!("scenes/demo: {error}")),
