@@ -45,9 +45,12 @@ pub(crate) fn enter<F: Format, const OCTANT: usize>(ray: &Ray<F>, node: &F::Node
     [slab::<_, OCTANT>(ray, first, limit), slab::<_, OCTANT>(ray, second, limit)]
 }
 
+/// Whether floats are routines. Leaving a box as soon as an axis decides is what makes them bearable; an FPU is quicker
+/// without the branches. Both find the same.
+const SOFT_FLOAT: bool = cfg!(any(target_arch = "arm", target_arch = "riscv32"));
+
 /// A ray that does not move along an axis has an infinite reciprocal, and in a plane of the box the product is not a
-/// number; every comparison with it is false, which leaves the plane out of account. Leaving as soon as an axis decides
-/// is what makes soft float bearable.
+/// number; every comparison with it is false, which leaves the plane out of account.
 #[inline(always)]
 fn slab<F: Real, const OCTANT: usize>(ray: &Ray<F>, planes: &[Triple<F>; 2], limit: F) -> Option<F> {
     let (mut entry, mut exit) = (F::ZERO, limit);
@@ -55,17 +58,13 @@ fn slab<F: Real, const OCTANT: usize>(ray: &Ray<F>, planes: &[Triple<F>; 2], lim
         let negative = if OCTANT == ANY_OCTANT { ray.negative[axis] } else { OCTANT >> axis & 1 != 0 };
         let near = (planes[usize::from(negative)][axis] - ray.origin[axis]) * ray.entering[axis];
         let far = (planes[usize::from(!negative)][axis] - ray.origin[axis]) * ray.leaving[axis];
-        if near > entry {
-            entry = near;
-        }
-        if far < exit {
-            exit = far;
-        }
-        if entry > exit {
+        entry = if near > entry { near } else { entry };
+        exit = if far < exit { far } else { exit };
+        if SOFT_FLOAT && entry > exit {
             return None;
         }
     }
-    Some(entry)
+    if entry > exit { None } else { Some(entry) }
 }
 
 #[cfg(test)]

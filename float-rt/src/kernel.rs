@@ -54,7 +54,7 @@ impl<F: Format> Kernel for Float<F> {
         boxes::pack::<F>(boxes, children)
     }
 
-    #[inline]
+    #[inline(always)]
     fn children(node: &F::Node) -> [u32; 2] {
         node.children()
     }
@@ -99,43 +99,43 @@ impl<F: Format> Kernel for Float<F> {
         Ray::new(stand_off(from), direction, F::INFINITY, skip)
     }
 
-    #[inline]
+    #[inline(always)]
     fn skip(ray: &Ray<F>) -> u32 {
         ray.skip
     }
 
-    #[inline]
+    #[inline(always)]
     fn octant(ray: &Ray<F>) -> usize {
         let [x, y, z] = ray.negative.map(usize::from);
         z << 2 | y << 1 | x
     }
 
-    #[inline]
+    #[inline(always)]
     fn reach(ray: &Ray<F>) -> F {
         boxes::limit(ray.reach)
     }
 
-    #[inline]
+    #[inline(always)]
     fn enter<const OCTANT: usize>(ray: &Ray<F>, node: &F::Node, limit: F) -> [Option<F>; 2] {
         boxes::enter::<_, OCTANT>(ray, node, limit)
     }
 
-    #[inline]
+    #[inline(always)]
     fn intersect(ray: &Ray<F>, triangle: &F::Triangle) -> Option<F> {
         triangle::intersect(ray, triangle)
     }
 
-    #[inline]
+    #[inline(always)]
     fn limit(depth: &F) -> F {
         boxes::limit(*depth)
     }
 
-    #[inline]
+    #[inline(always)]
     fn order(a: &F, b: &F) -> Ordering {
         a.order(*b)
     }
 
-    #[inline]
+    #[inline(always)]
     fn within(entry: F, limit: F) -> bool {
         entry <= limit
     }

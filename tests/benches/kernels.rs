@@ -2,10 +2,10 @@
 //!
 //! One thread, scalar code, primary and shadow rays, the whole picture. Kernels take turns within every round, and a ratio
 //! is taken within its round: on a machine that others use too, figures that were measured one after the other say
-//! little. What is printed is the median of the rounds and their spread. Instructions are counted by valgrind, where it
-//! is installed; they are the same on every run.
+//! little. What is printed is the median of the rounds and their spread. With `--instructions`, valgrind counts them where
+//! it is installed; they are the same on every run.
 //!
-//! `cargo bench -p tests --bench kernels -- [--size N] [--rounds N] [--leaf N] [KERNEL…]`
+//! `cargo bench -p tests --bench kernels -- [--size N] [--rounds N] [--leaf N] [--instructions] [KERNEL…]`
 
 use std::collections::BTreeMap;
 use std::hint::black_box;
@@ -38,6 +38,9 @@ struct Arguments {
     /// Leaves of so many triangles or fewer
     #[arg(long)]
     leaf: Option<u32>,
+    /// Count instructions too, by valgrind: minutes for the larger scenes
+    #[arg(long)]
+    instructions: bool,
     /// Render one scene once by one kernel, and nothing else: what is run under valgrind
     #[arg(long, value_name = "SCENE", hide = true)]
     once: Option<String>,
@@ -173,7 +176,7 @@ fn main() -> ExitCode {
                 ratios.push(time / seconds[0]);
             }
         }
-        let base = instructions(&arguments, scene, "f32");
+        let base = arguments.instructions.then(|| instructions(&arguments, scene, "f32")).flatten();
         for (((name, _, _, count), blob), ratios) in entries.iter().zip(&blobs).zip(&mut rounds) {
             let ratio = median(ratios);
             let (least, most) = (ratios[0], ratios[ratios.len() - 1]);
