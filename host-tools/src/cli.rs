@@ -13,6 +13,7 @@ mod prep;
 mod progress;
 mod render;
 mod run_elf;
+mod trace;
 
 use std::process::ExitCode;
 
@@ -35,6 +36,7 @@ enum Command {
     Prep(prep::Arguments),
     Inspect(inspect::Arguments),
     Render(render::Arguments),
+    Trace(trace::Arguments),
     Compare(compare::Arguments),
     Emulate(emulate::Arguments),
     #[command(hide = true)]
@@ -49,6 +51,7 @@ pub fn run() -> ExitCode {
         Some(Command::Prep(arguments)) => prep::run(&arguments),
         Some(Command::Inspect(arguments)) => inspect::run(&arguments),
         Some(Command::Render(arguments)) => render::run(&arguments),
+        Some(Command::Trace(arguments)) => trace::run(&arguments),
         Some(Command::Compare(arguments)) => compare::run(&arguments),
         Some(Command::Emulate(arguments)) => emulate::run(&arguments),
         Some(Command::RunElf(arguments)) => run_elf::run(&arguments),

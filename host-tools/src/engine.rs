@@ -5,7 +5,6 @@ use std::marker::PhantomData;
 use core_rt::blob::{BlobError, Header};
 use core_rt::exact::{Exact14, Exact20, Exact29};
 use core_rt::hanika::{HanikaC, HanikaCd, HanikaCons};
-use core_rt::kernel::Kernel;
 use core_rt::profile::Full;
 use core_rt::scene::Scene;
 use float_rt::{Float32, Float64};
@@ -13,6 +12,7 @@ use float_rt::{Float32, Float64};
 use crate::model::Model;
 use crate::prepare::{self, Options, PrepareError, Prepared};
 use crate::render::{self, Progress, Rendered};
+use crate::trace::{Measure, Trace, Tracer};
 
 /// What can be done with a kernel.
 pub trait Engine: Sync {
@@ -37,6 +37,11 @@ pub trait Engine: Sync {
     /// # Errors
     /// Where the blob is not one for this kernel.
     fn render(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<Rendered, BlobError>;
+    /// What finds the nearest hits in a blob's scene.
+    ///
+    /// # Errors
+    /// Where the blob is not one for this kernel, or its header does not say where its grid is.
+    fn tracer<'a>(&self, blob: &'a [u8]) -> Result<Box<dyn Trace + 'a>, BlobError>;
 }
 
 /// Bytes of each section, padding left out.
@@ -57,7 +62,7 @@ pub struct Sizes {
 #[derive(Debug)]
 struct Of<K>(PhantomData<K>);
 
-impl<K: Kernel> Engine for Of<K> {
+impl<K: Measure> Engine for Of<K> {
     fn name(&self) -> &'static str {
         K::NAME
     }
@@ -88,6 +93,11 @@ impl<K: Kernel> Engine for Of<K> {
 
     fn render(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<Rendered, BlobError> {
         Ok(render::render(&Scene::<Full<K>>::new_checked(blob)?, tile, progress))
+    }
+
+    fn tracer<'a>(&self, blob: &'a [u8]) -> Result<Box<dyn Trace + 'a>, BlobError> {
+        let tracer = Tracer::<K>::new(Scene::new_checked(blob)?).ok_or(BlobError::Header)?;
+        Ok(Box::new(tracer))
     }
 }
 

@@ -7,6 +7,8 @@ use std::fs::{self, File};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
+use tempfile::NamedTempFile;
+
 /// More than any scene or picture that the tracer could use; a guard against `/dev/zero` and the like.
 const MOST_BYTES: u64 = 1 << 30;
 
@@ -106,31 +108,80 @@ fn target(path: &Path) -> Result<Target, FileError> {
     }
 }
 
-/// Writes a whole file: to a temporary one in the same folder, which then takes the target's name.
+/// A file that is written bit by bit, and is there only when it is complete: a temporary one in the same folder, which
+/// then takes the target's name. Until then, and if that does not come, the old file is as it was.
+///
+/// What is no regular file (`/dev/null`, a pipe) is written as it comes.
+#[derive(Debug)]
+pub struct AtomicFile {
+    path: PathBuf,
+    place: Place,
+}
+
+#[derive(Debug)]
+enum Place {
+    Beside(NamedTempFile, PathBuf),
+    Device(File),
+}
+
+impl AtomicFile {
+    /// Begins a file.
+    ///
+    /// # Errors
+    /// [`FileError`] where the target is a folder, its folder is absent, or the system refuses.
+    pub fn create(path: &Path) -> Result<Self, FileError> {
+        let refused = |source: io::Error| FileError::Write { path: path.into(), source };
+        let place = match target(path)? {
+            Target::Device => Place::Device(File::create(path).map_err(refused)?),
+            Target::File(file, folder) => {
+                let mut builder = tempfile::Builder::new();
+                builder.prefix(".intray-");
+                #[cfg(unix)]
+                {
+                    // What File::create would give: everyone's, less the umask. A temporary file is private otherwise.
+                    use std::os::unix::fs::PermissionsExt;
+                    builder.permissions(fs::Permissions::from_mode(0o666));
+                }
+                Place::Beside(builder.tempfile_in(folder).map_err(refused)?, file)
+            }
+        };
+        Ok(Self { path: path.into(), place })
+    }
+
+    /// Appends bytes.
+    ///
+    /// # Errors
+    /// [`FileError`] where the system refuses.
+    pub fn write(&mut self, bytes: &[u8]) -> Result<(), FileError> {
+        let written = match &mut self.place {
+            Place::Beside(file, _) => file.write_all(bytes),
+            Place::Device(device) => device.write_all(bytes),
+        };
+        written.map_err(|source| FileError::Write { path: self.path.clone(), source })
+    }
+
+    /// Gives the file its name.
+    ///
+    /// # Errors
+    /// [`FileError`] where the system refuses.
+    pub fn finish(self) -> Result<(), FileError> {
+        let Self { path, place } = self;
+        let Place::Beside(file, target) = place else { return Ok(()) };
+        // The name must not reach the disk before the bytes do.
+        let persisted = file.as_file().sync_all().and_then(|()| Ok(file.persist(target)?));
+        persisted.map(drop).map_err(|source| FileError::Write { path, source })
+    }
+}
+
+/// Writes a whole [`AtomicFile`].
 ///
 /// # Errors
 /// [`FileError`] where the target is a folder, its folder is absent, or the system refuses. The old file, if
 /// there was one, is then as it was.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
-    let refused = |source: io::Error| FileError::Write { path: path.into(), source };
-    let (target, folder) = match target(path)? {
-        Target::File(file, folder) => (file, folder),
-        Target::Device => return fs::write(path, bytes).map_err(refused),
-    };
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".intray-");
-    #[cfg(unix)]
-    {
-        // What File::create would give: everyone's, less the umask. A temporary file is private otherwise.
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    let mut file = builder.tempfile_in(folder).map_err(refused)?;
-    file.write_all(bytes).map_err(refused)?;
-    // The name must not reach the disk before the bytes do.
-    file.as_file().sync_all().map_err(refused)?;
-    file.persist(&target).map_err(|error| refused(error.error))?;
-    Ok(())
+    let mut file = AtomicFile::create(path)?;
+    file.write(bytes)?;
+    file.finish()
 }
 
 #[cfg(test)]

@@ -15,4 +15,5 @@ pub mod picture;
 pub mod prepare;
 pub mod reference;
 pub mod render;
+pub mod trace;
 pub mod tree;

@@ -1,7 +1,7 @@
 //! What the verbs share: scenes, kernels, sizes, threads.
 
 use std::ffi::OsStr;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -57,24 +57,25 @@ pub(super) struct SceneArguments {
     knobs: KnobArguments,
 }
 
+const ARITHMETIC: &str = "Arithmetic (hanika-* only)";
+
 /// What a study sets of a kernel's arithmetic.
 #[derive(Clone, Copy, Debug, Args)]
-#[command(next_help_heading = "Arithmetic (hanika-* only)")]
 struct KnobArguments {
     /// C: bits by which reciprocals of directions are shifted to the left
-    #[arg(long = "c-bits", value_name = "C", allow_negative_numbers = true)]
+    #[arg(long, value_name = "C", allow_negative_numbers = true, help_heading = ARITHMETIC)]
     c_bits: Option<u8>,
 
     /// D: bits by which differences to a box's planes are shifted to the right
-    #[arg(long = "d-bits", value_name = "D", allow_negative_numbers = true)]
+    #[arg(long, value_name = "D", allow_negative_numbers = true, help_heading = ARITHMETIC)]
     d_bits: Option<u8>,
 
     /// E: bits by which edges are shifted to the left [default: the most that the scene allows]
-    #[arg(long, value_name = "E", allow_negative_numbers = true)]
+    #[arg(long, value_name = "E", allow_negative_numbers = true, help_heading = ARITHMETIC)]
     edge_shift: Option<u8>,
 
     /// How far from a surface rays leave it, grid units
-    #[arg(long, value_name = "UNITS", allow_negative_numbers = true)]
+    #[arg(long, value_name = "UNITS", allow_negative_numbers = true, help_heading = ARITHMETIC)]
     epsilon: Option<u8>,
 }
 
@@ -119,16 +120,31 @@ impl SceneArguments {
         }
     }
 
-    /// Reads and prepares a model for the kernel asked for.
-    fn load_model(&self, default: &'static dyn Engine) -> Result<Scene, Failure> {
-        let mut model = model(&self.scene)?;
+    /// Reads a model for the reference, which has neither a tree to set nor knobs.
+    pub(super) fn model_for_reference(&self) -> Result<Model, Failure> {
+        if self.leaf.is_some() || self.knobs.any() {
+            return Err(Failure::input("--leaf and the knobs of arithmetic are the kernels'; the reference has none"));
+        }
+        self.model()
+    }
+
+    /// Reads a model, with the size and the number of triangles that are asked for.
+    fn model(&self) -> Result<Model, Failure> {
+        let Imported { mut model, warnings } = import::load(&self.scene)?;
+        warnings.iter().for_each(warn);
         if let Some(size) = self.size {
             model.render.size = size;
         }
-        if let Some(target) = self.triangles {
-            model = decimate::decimate(model, target as usize)
-                .map_err(|error| Failure::input(format!("{}: {error}", self.scene.display())))?;
+        match self.triangles {
+            Some(target) => decimate::decimate(model, target as usize)
+                .map_err(|error| Failure::input(format!("{}: {error}", self.scene.display()))),
+            None => Ok(model),
         }
+    }
+
+    /// Reads and prepares a model for the kernel asked for.
+    fn load_model(&self, default: &'static dyn Engine) -> Result<Scene, Failure> {
+        let model = self.model()?;
         let engine = self.engine().unwrap_or(default);
         let prepared = engine
             .prepare(&model, &self.options())
@@ -192,13 +208,6 @@ impl SceneArguments {
             knobs: self.knobs.into(),
         }
     }
-}
-
-/// Imports a scene.toml or an OBJ; warnings go to stderr.
-fn model(path: &Path) -> Result<Model, Failure> {
-    let Imported { model, warnings } = import::load(path)?;
-    warnings.iter().for_each(warn);
-    Ok(model)
 }
 
 fn warn_of_degenerates(degenerates: Degenerates, triangles: usize) {

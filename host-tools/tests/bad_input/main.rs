@@ -10,5 +10,6 @@ mod decimation;
 mod good;
 mod outputs;
 mod pictures;
+mod rays;
 mod scene_files;
 mod scene_toml;
