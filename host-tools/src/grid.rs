@@ -4,6 +4,7 @@
 //! light is within the kernel's span of all of it.
 
 use core_rt::kernel::{Bounds, Kernel, Vertices};
+use core_rt::num::{bits, sub};
 use glam::DVec3;
 use thiserror::Error;
 
@@ -80,6 +81,16 @@ impl Grid {
     #[must_use]
     pub fn place(&self, point: DVec3) -> [i32; 3] {
         ((point - self.origin) * self.scale).to_array().map(|c| (c + 0.5).floor() as i32)
+    }
+
+    /// The bits that tell a model's vertices apart along their longest side. A camera or a light outside takes some of a
+    /// kernel's, and the farther it is, the more.
+    #[must_use]
+    pub fn bits(&self, model: &Model) -> u32 {
+        let vertices = model.triangles.iter().flat_map(|t| t.vertices).map(|v| model.positions[v as usize]);
+        let steps =
+            Extent::of(vertices).map_or([0; 3], |geometry| sub(self.place(geometry.high), self.place(geometry.low)));
+        bits(steps)
     }
 
     /// The model on the grid.

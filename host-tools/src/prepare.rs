@@ -4,13 +4,14 @@
 
 mod header;
 mod layout;
+mod loss;
 
 pub use layout::Blob;
+pub use loss::{Keeper, Loss, losses};
 
 use core_rt::arithmetic::Knobs;
 use core_rt::bvh::Child;
 use core_rt::kernel::{Bounds, Kernel};
-use core_rt::num::{cross, sub};
 use core_rt::record::Material;
 use thiserror::Error;
 
@@ -35,8 +36,8 @@ pub enum PrepareError {
     Grid(#[from] GridError),
     /// Nothing is left.
     #[error(
-        "none of {triangles} triangles has an area on the {bits}-bit grid of {kernel}, so nothing is left to render; \
-         check the vertices, or bring the camera and the lights closer to them"
+        "none of {triangles} triangles has an area on the {bits}-bit grid of {kernel}, so nothing is left to render; {}",
+        advice(*.keeper)
     )]
     AllDegenerate {
         /// How many there were.
@@ -45,6 +46,8 @@ pub enum PrepareError {
         bits: u32,
         /// The kernel's name.
         kernel: &'static str,
+        /// A kernel that keeps some.
+        keeper: Option<Keeper>,
     },
     /// More triangles than a tree can refer to.
     #[error("the scene has {found} triangles, and a blob holds at most {most}")]
@@ -78,6 +81,15 @@ pub enum PrepareError {
         /// How long it would be.
         bytes: u64,
     },
+}
+
+/// What to do where a kernel's grid keeps no triangle.
+fn advice(keeper: Option<Keeper>) -> String {
+    let closer = "bring the camera and the lights closer to them";
+    match keeper {
+        None => format!("check the vertices, or {closer}"),
+        Some(Keeper { kernel, triangles }) => format!("{kernel} keeps {triangles} of them, or {closer}"),
+    }
 }
 
 /// Triangles that have no area on the grid, by cause (the columns of the 2009 report's Table 2 are their sum).
@@ -128,6 +140,7 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
             triangles: model.triangles.len(),
             bits: K::GRID_BITS,
             kernel: K::NAME,
+            keeper: loss::keeps_some(K::GRID_BITS, model),
         });
     }
     let Tree { root, nodes, order, depth } =
@@ -177,8 +190,8 @@ fn with_area(snapped: &Snapped<'_>) -> (Vec<u32>, Degenerates) {
     let mut degenerates = Degenerates::default();
     let mut ids = Vec::new();
     for (id, corners) in (0..).zip(snapped.iter()) {
-        let [a, b, c] = corners.map(|v| v.map(i64::from));
-        if cross(sub(b, a), sub(c, a)) != [0; 3] {
+        let [a, b, c] = corners;
+        if loss::has_area(corners) {
             ids.push(id);
         } else if a == b || b == c || c == a {
             degenerates.zero_edge += 1;

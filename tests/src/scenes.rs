@@ -1,4 +1,8 @@
-//! Small scenes for goldens: each asks for something that the others do not.
+//! Small scenes for goldens: each asks for something that the others do not. And larger ones to measure errors on.
+
+mod vast_ground;
+
+pub use vast_ground::vast_ground;
 
 use glam::DVec3;
 use host_tools::builtin;
@@ -103,6 +107,20 @@ pub fn inside(n: i64) -> Model {
     model.background = DVec3::new(1.0, 0.0, 1.0);
     model.lights[0].kind = LightKind::Point(DVec3::splat(0.45));
     model
+}
+
+/// Closed meshes: the background is seen through a hole and beside them, but not where a ray meets them.
+#[must_use]
+pub fn closed() -> Vec<(&'static str, Model)> {
+    let size = [96, 64];
+    vec![
+        ("sphere of 72, inside", inside(3)),
+        ("sphere of 32768, inside", inside(64)),
+        ("sphere of 72, outside", of(&meshes::sphere(10, 3), size)),
+        ("sphere of 32768, outside", of(&meshes::sphere(10, 64), size)),
+        ("cuboid, outside", of(&meshes::cuboid([100, 100, 100], [900, 700, 800]), size)),
+        ("plate, outside", of(&meshes::cuboid([100, 500, 100], [900, 501, 800]), size)),
+    ]
 }
 
 const SHARED: [&str; 6] = [

@@ -11,9 +11,11 @@
 //! u = e2 . q is U / 2^b low or high by less than |e2|_1, since each component of R / 2^b - q is in [0, 1). So
 //! |u - U / 2^b| < 3 * 2^b, and likewise v. With R below 2^c, `|u| <= 3 * 2^b * 2^(c - b)` fits the word.
 //! The record keeps n = N >> k, k = max(0, 2 b - NORMAL_BITS). Then -(D . n) is det / 2^k within |D|_1, and shifted right
-//! by b - k it is det / 2^b within (3 * 2^DIRECTION_BITS >> (b - k)) + 1. W is a triple product with the third edge, as
-//! U and V are with theirs, so W / 2^b fits the word although its terms' sum may not: it is computed by wrapping.
-//! Where the filter is undecided, the same sums are formed in [`Width::Wide`], without error.
+//! by b - k it is det / 2^b within (3 * 2^DIRECTION_BITS >> (b - k)) + 1; no bit is lost there, since
+//! b - k = min(b, NORMAL_BITS - b) <= DIRECTION_BITS. W is a triple product with the third edge, as U and V are with theirs,
+//! so W / 2^b and its error, far below 2^c, fit the word although the terms' sum may not: it is computed by wrapping.
+//! Where the filter is undecided, the same sums are formed in [`Width::Wide`], without error. `docs/EXACTNESS.md` has the
+//! proof step by step.
 
 use core::cmp::Ordering;
 

@@ -48,8 +48,9 @@ pub trait Reciprocal: Copy + Debug {
     /// From a component; 0 stands for "does not move along this axis".
     fn new(component: Self::Word) -> Self;
     /// `delta / component` in the unit of [`Width::SLACK`], rounded down; not above the true value where that is not
-    /// negative, negative where that is. Where the component is 0 and `delta` at least 1, at least every limit that a
-    /// hit can have.
+    /// negative, negative where that is. It does not fall as `delta` rises where the component is not negative, and does
+    /// not rise where it is. Where the component is 0 and `delta` at least 1, at least every limit that a hit can have, less
+    /// [`Width::SLACK`].
     fn along(self, delta: Self::Word) -> Self::Word;
 }
 

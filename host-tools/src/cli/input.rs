@@ -18,7 +18,7 @@ use crate::files;
 use crate::import::{self, Imported};
 use crate::model::Model;
 use crate::picture::{SIZES, size_is_allowed};
-use crate::prepare::{Blob, Degenerates, Options};
+use crate::prepare::{Blob, Degenerates, Options, losses};
 use crate::tree::TreeOptions;
 
 /// A scene, and how it is prepared.
@@ -150,6 +150,7 @@ impl SceneArguments {
             .prepare(&model, &self.options())
             .map_err(|error| Failure::input(format!("{}: {error}", self.scene.display())))?;
         warn_of_degenerates(prepared.degenerates, model.triangles.len());
+        losses(engine.name(), engine.grid_bits(), &model, &prepared.grid).iter().for_each(warn);
         Ok(Scene { engine, blob: prepared.blob, degenerates: Some(prepared.degenerates) })
     }
 

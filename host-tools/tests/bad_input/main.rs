@@ -8,6 +8,7 @@ mod blobs;
 mod command;
 mod decimation;
 mod good;
+mod kernels;
 mod outputs;
 mod pictures;
 mod rays;

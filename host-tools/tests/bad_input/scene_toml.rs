@@ -119,8 +119,8 @@ fn extremes_that_are_good() {
         for kernel in ["exact29", "exact14"] {
             let folder = Folder::with_triangle();
             folder.write("scene.toml", format!("model = 'scene.obj'\n{lines}\n").as_bytes());
-            // A smaller grid may hold less of what is far; it says so then.
-            if kernel == "exact29" || !lines.contains("1e8") {
+            // What is far takes bits; `kernels` has what is said then.
+            if !lines.contains("1e8") {
                 folder.succeeds(&format!("render scene.toml --size 9x7 --kernel {kernel} -o out.png"), "");
             }
         }
