@@ -8,7 +8,7 @@ use core_rt::blob::{Header, PREFIX_SIZE, Prefix};
 use core_rt::exact::{Exact14, Exact20, Exact29};
 use core_rt::hanika::{HanikaC, HanikaCd, HanikaCons};
 use core_rt::kernel::Kernel;
-use float_rt::Float32;
+use float_rt::{Float32, Float64};
 use zerocopy::FromBytes;
 
 use crate::board::Board;
@@ -57,7 +57,7 @@ impl Traits {
     /// The kernel's type as a path in Rust; `None` where no firmware has it.
     #[must_use]
     pub fn kernel_path(&self) -> Option<&'static str> {
-        const KERNELS: [(u16, &str); 7] = [
+        const KERNELS: [(u16, &str); 8] = [
             (Exact14::ID, "core_rt::exact::Exact14"),
             (Exact20::ID, "core_rt::exact::Exact20"),
             (Exact29::ID, "core_rt::exact::Exact29"),
@@ -65,6 +65,7 @@ impl Traits {
             (HanikaCd::ID, "core_rt::hanika::HanikaCd"),
             (HanikaCons::ID, "core_rt::hanika::HanikaCons"),
             (Float32::ID, "float_rt::Float32"),
+            (Float64::ID, "float_rt::Float64"),
         ];
         KERNELS.into_iter().find(|&(id, _)| id == self.kernel).map(|(_, path)| path)
     }

@@ -5,7 +5,8 @@
 
 use std::time::Duration;
 
-use core_rt::exact::Exact14;
+use core_rt::exact::{Exact14, Exact20, Exact29};
+use core_rt::hanika::HanikaCd;
 use core_rt::profile::Full;
 use core_rt::render::Tile;
 use core_rt::scene::{MAX_DEPTH, Scene};
@@ -14,6 +15,7 @@ use firmware_rt::board::{Board, HIFIVE1, MICROBIT};
 use firmware_rt::build::{DEFAULT_BLOB, Traits};
 use firmware_rt::hits::{self, Way};
 use firmware_rt::status::Status;
+use float_rt::Float64;
 use host_tools::builtin;
 use host_tools::emulate::counter::Counter;
 use host_tools::emulate::elf::Elf;
@@ -78,12 +80,17 @@ fn run(elf: &Elf, board: &Board, blob: &[u8], counter: Option<&Counter>) -> Resu
 #[test]
 fn pictures_are_the_hosts() {
     for board in boards() {
-        for kernel in ["exact14", "exact29"] {
-            let five_triangles = match kernel {
-                "exact14" => blobs::sample::<Exact14>(false),
-                _ => blobs::sample::<core_rt::exact::Exact29>(false),
-            };
-            for blob in [prepared(&built_in(), kernel), five_triangles.bytes().to_vec()] {
+        let five_triangles = [
+            ("exact14", blobs::sample::<Exact14>(false)),
+            ("exact20", blobs::sample::<Exact20>(false)),
+            ("exact29", blobs::sample::<Exact29>(false)),
+            ("hanika-cd", blobs::sample::<HanikaCd>(false)),
+            ("f64", blobs::sample::<Float64>(false)),
+        ];
+        for (kernel, five_triangles) in &five_triangles {
+            // `machines` has larger scenes, for the kernels that are meant for chips.
+            let built_in = (*kernel == "exact14").then(|| prepared(&built_in(), kernel));
+            for blob in [five_triangles.bytes().to_vec()].into_iter().chain(built_in) {
                 let elf = wanted(board, &blob).provide().unwrap();
                 let (outcome, heard) = run(&elf, board, &blob, None).unwrap();
                 let picture = host(&blob, kernel).picture;
@@ -220,9 +227,9 @@ fn what_does_not_fit_is_said_before_anything_is_built() {
 
 #[test]
 fn a_kernel_without_firmware_is_named() {
-    let traits = Traits::of(&prepared(&built_in(), "f64")).unwrap();
+    let traits = Traits { kernel: 0xffff, ..Traits::of(&prepared(&built_in(), "exact14")).unwrap() };
     let error = firmware::check(&MICROBIT, &traits).unwrap_err().to_string();
-    assert!(error.contains("the kernel f64") && error.contains("exact14"), "{error}");
+    assert!(error.contains("the kernel of this blob") && error.contains("exact14"), "{error}");
 }
 
 #[test]
