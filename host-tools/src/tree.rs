@@ -19,11 +19,33 @@ pub struct TreeOptions {
     pub leaf_always: bool,
     /// What a triangle test costs, in box tests.
     pub triangle_cost: f64,
+    /// Larger boxes of leaves, for the study of box tests that lose hits.
+    pub leaf_growth: Option<Growth>,
+}
+
+/// By how much boxes of leaves are larger than what they hold; the boxes above hold them still.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Growth {
+    /// On every side, grid units, not negative.
+    pub by: i32,
+    /// How far they grow at most: where a kernel takes boxes.
+    pub within: Bounds,
+}
+
+impl Growth {
+    fn of(self, bounds: Bounds) -> Bounds {
+        let Self { by, within } = self;
+        let grown = Bounds {
+            low: [0, 1, 2].map(|axis| bounds.low[axis].saturating_sub(by).max(within.low[axis])),
+            high: [0, 1, 2].map(|axis| bounds.high[axis].saturating_add(by).min(within.high[axis])),
+        };
+        grown.union(&bounds)
+    }
 }
 
 impl Default for TreeOptions {
     fn default() -> Self {
-        Self { leaf_max: 8, leaf_always: false, triangle_cost: 1.2 }
+        Self { leaf_max: 8, leaf_always: false, triangle_cost: 1.2, leaf_growth: None }
     }
 }
 
@@ -89,6 +111,7 @@ fn subtree(items: &mut [Item], first: u32, level: u32, options: TreeOptions, nod
     let bounds = union(items.iter().map(|item| item.bounds));
     let Some(middle) = split(items, &bounds, level, options) else {
         let leaf = Child::Leaf { first, count: items.len() as u32 };
+        let bounds = options.leaf_growth.map_or(bounds, |growth| growth.of(bounds));
         return Subtree { packed: leaf.pack(), bounds, levels: 0 };
     };
     let index = nodes.len();
@@ -107,6 +130,7 @@ fn subtree(items: &mut [Item], first: u32, level: u32, options: TreeOptions, nod
         [a, subtree(right, right_first, level + 1, options, nodes)]
     };
     nodes[index] = Node { boxes: [a.bounds, b.bounds], children: [a.packed, b.packed] };
+    let bounds = a.bounds.union(&b.bounds);
     Subtree { packed: Child::Node(index as u32).pack(), bounds, levels: a.levels.max(b.levels) + 1 }
 }
 

@@ -21,6 +21,7 @@ usage: cargo xtask VERB
   setup                installs what the emulated boards need: targets and QEMU
   test [--long]        runs every check, after installing what they need
   fuzz [--seconds N]   fuzzes the blob and the importers, N seconds each (60)
+  studies [--quick]    measures the 2009 report's claims and writes docs/STUDIES.md; quickly, and smaller, to out/studies
   bless                renews the goldens and the README's figures, and shows which changed
   demo-scene           writes scenes/demo anew
   bench-scene          writes scenes/bench-1k anew";
@@ -31,6 +32,7 @@ enum Verb {
     Setup,
     Test { long: bool },
     Fuzz { seconds: u32 },
+    Studies { quick: bool },
     Bless,
     DemoScene,
     BenchScene,
@@ -44,6 +46,8 @@ impl Verb {
             ["test", "--long"] => Some(Self::Test { long: true }),
             ["fuzz"] => Some(Self::Fuzz { seconds: 60 }),
             ["fuzz", "--seconds", seconds] => Some(Self::Fuzz { seconds: seconds.parse().ok()? }),
+            ["studies"] => Some(Self::Studies { quick: false }),
+            ["studies", "--quick"] => Some(Self::Studies { quick: true }),
             ["bless"] => Some(Self::Bless),
             ["demo-scene"] => Some(Self::DemoScene),
             ["bench-scene"] => Some(Self::BenchScene),
@@ -85,6 +89,11 @@ fn perform(verb: Verb) -> Result<(), String> {
             let skipped = run(&fuzz::steps(seconds, &[tool::NIGHTLY, tool::CARGO_FUZZ_INSTALLED]))?;
             if skipped == 0 { Ok(()) } else { Err("nothing was fuzzed".into()) }
         }
+        Verb::Studies { quick } => {
+            let option = if quick { " -- --quick" } else { "" };
+            let line = format!("cargo run --quiet --release -p tests --bin studies{option}");
+            run(&[Step::new("studies", Task::new(&line))]).map(drop)
+        }
         Verb::Bless => run(&[
             Step::new(
                 "new goldens",
@@ -124,7 +133,15 @@ mod tests {
         assert_eq!(Verb::parse(&["test"]), Some(Verb::Test { long: false }));
         assert_eq!(Verb::parse(&["test", "--long"]), Some(Verb::Test { long: true }));
         assert_eq!(Verb::parse(&["fuzz", "--seconds", "5"]), Some(Verb::Fuzz { seconds: 5 }));
-        for wrong in [&[][..], &["tset"], &["test", "--lnog"], &["fuzz", "--seconds", "-5"], &["bless", "now"]] {
+        assert_eq!(Verb::parse(&["studies", "--quick"]), Some(Verb::Studies { quick: true }));
+        for wrong in [
+            &[][..],
+            &["tset"],
+            &["test", "--lnog"],
+            &["fuzz", "--seconds", "-5"],
+            &["bless", "now"],
+            &["studies", "now"],
+        ] {
             assert_eq!(Verb::parse(wrong), None, "{wrong:?}");
         }
     }

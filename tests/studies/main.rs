@@ -1,0 +1,62 @@
+//! Measures what the 2009 report claims, and writes docs/STUDIES.md and its plots.
+//!
+//! `studies [--quick]`: quickly is smaller, and goes to out/studies, so that the document is always of a whole run.
+
+mod study;
+
+use std::path::Path;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use host_tools::files;
+use study::{ALL, Page, Setup, document, scenes};
+
+fn main() -> ExitCode {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let quick = match words.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        [] => false,
+        ["--quick"] => true,
+        _ => {
+            eprintln!("usage: studies [--quick]");
+            return ExitCode::from(2);
+        }
+    };
+    match run(quick) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("{message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(quick: bool) -> Result<(), String> {
+    let (size, rounds) = if quick { (128, 1) } else { (1024, 7) };
+    let begin = Instant::now();
+    let mut subjects = scenes::own(size);
+    let (shared, absent) = scenes::shared(size);
+    subjects.extend(shared);
+    let setup = Setup { size, rounds, subjects, absent };
+    let pages: Vec<Page> = ALL
+        .iter()
+        .enumerate()
+        .map(|(place, (title, page))| {
+            eprintln!("{:>4.0} s  {} of {}: {title}", begin.elapsed().as_secs_f64(), place + 1, ALL.len());
+            page(&setup)
+        })
+        .collect();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(if quick { "out/studies" } else { "docs" });
+    let plots = root.join("studies");
+    std::fs::create_dir_all(&plots).map_err(|error| format!("{}: {error}", plots.display()))?;
+    let write = |name: String, text: &str| {
+        files::write_atomically(&root.join(name), text.as_bytes()).map_err(|error| error.to_string())
+    };
+    for page in &pages {
+        if let Some(plot) = &page.plot {
+            write(format!("studies/{}.svg", page.name), plot)?;
+        }
+    }
+    write("STUDIES.md".into(), &document(&setup, &pages))?;
+    eprintln!("{:>4.0} s  written: {}", begin.elapsed().as_secs_f64(), root.join("STUDIES.md").display());
+    Ok(())
+}
