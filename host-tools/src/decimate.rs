@@ -10,6 +10,8 @@
 //! - Smooth normals: the normal of a vertex is the mean of those that were collapsed into it, by area. A triangle with
 //!   one normal for all corners is flat, before and after.
 //! - Closed stays closed, and no collapse turns a triangle over.
+//!
+//! Texture coordinates and colours of vertices are not carried along: the decimated model has none.
 
 mod quadric;
 mod surface;
@@ -105,6 +107,8 @@ fn rebuilt(model: Model, surface: &Surface) -> Model {
         positions: positions.old.into_iter().map(|vertex| surface.positions[vertex]).collect(),
         normals: normals.old.into_iter().filter_map(|wedge| surface.normal(wedge)).collect(),
         triangles,
+        uvs: Vec::new(),
+        colours: Vec::new(),
         ..model
     }
 }

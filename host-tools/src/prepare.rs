@@ -5,9 +5,11 @@
 mod header;
 mod layout;
 mod loss;
+mod unsupported;
 
 pub use layout::Blob;
 pub use loss::{Keeper, Loss, losses};
+pub use unsupported::{Unsupported, missing};
 
 use core_rt::arithmetic::Knobs;
 use core_rt::bvh::Child;
@@ -31,6 +33,9 @@ pub struct Options {
 /// Why a scene cannot be prepared for a kernel.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 pub enum PrepareError {
+    /// No kernel has what the scene is made of.
+    #[error(transparent)]
+    Unsupported(#[from] Unsupported),
     /// No grid.
     #[error(transparent)]
     Grid(#[from] GridError),
@@ -125,6 +130,7 @@ pub struct Prepared {
 /// # Errors
 /// Where the kernel cannot hold the scene.
 pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, PrepareError> {
+    let plain = unsupported::plain(model)?;
     if model.triangles.len() >= Child::INDEX_END as usize {
         return Err(PrepareError::TooManyTriangles { found: model.triangles.len(), most: Child::INDEX_END - 1 });
     }
@@ -159,6 +165,7 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
         model,
         &grid,
         layout::Parts {
+            plain,
             root,
             depth,
             arithmetic,

@@ -8,8 +8,9 @@ use core_rt::exact::{Exact14, Exact20, Exact29};
 use core_rt::kernel::Kernel;
 use core_rt::profile::Full;
 use core_rt::scene::Scene;
+use glam::DVec3;
 use host_tools::import::{Embedded, ImportError, Imported, load_from};
-use host_tools::model::Model;
+use host_tools::model::{Model, Projection};
 use host_tools::prepare::Blob;
 
 use crate::blobs::{Draft, corners, repaired};
@@ -84,7 +85,14 @@ pub fn sound(model: &Model) -> Result<(), &'static str> {
     let below = |indices: [u32; 3], count: usize| indices.iter().all(|&i| (i as usize) < count);
     rule(model.positions.iter().all(|p| p.is_finite()), "a position is not finite")?;
     rule(model.normals.iter().all(|n| n.is_normalized()), "a normal is not of unit length")?;
-    rule(!model.triangles.is_empty(), "there are no triangles")?;
+    rule(!model.triangles.is_empty() || !model.spheres.is_empty(), "there are no triangles")?;
+    let of_each = |count: usize, all: usize| count == 0 || count == all;
+    rule(of_each(model.colours.len(), model.positions.len()), "colours are not of vertices")?;
+    rule(of_each(model.uvs.len(), model.triangles.len()), "texture coordinates are not of triangles")?;
+    for sphere in &model.spheres {
+        rule(sphere.centre.is_finite() && sphere.radius > 0.0, "a sphere is none")?;
+        rule((sphere.material as usize) < model.materials.len(), "a material is out of range")?;
+    }
     for triangle in &model.triangles {
         rule(below(triangle.vertices, model.positions.len()), "a vertex is out of range")?;
         let normals = triangle.normals.is_none_or(|n| below(n, model.normals.len()));
@@ -93,8 +101,16 @@ pub fn sound(model: &Model) -> Result<(), &'static str> {
         rule(material, "a material is out of range")?;
     }
     for material in &model.materials {
-        let reflects = material.diffuse.min_element() >= 0.0 && material.diffuse.max_element() <= 1.0;
+        let is_tint = |colour: DVec3| colour.min_element() >= 0.0 && colour.max_element() <= 1.0;
+        let others = [material.checker.map(|checker| checker.other), material.specular.map(|specular| specular.colour)];
+        let reflects = is_tint(material.colour) && others.into_iter().flatten().all(is_tint);
         rule(reflects, "a reflectance is not in [0, 1]")?;
+        rule(material.checker.is_none_or(|checker| checker.size > 0.0), "a checker has no size")?;
+        rule(material.ior.is_finite() && material.ior > 0.0, "an index of refraction is not above 0")?;
+        rule(material.specular.is_none_or(|specular| specular.exponent > 0), "an exponent is 0")?;
+        let shares = material.weights.unwrap_or_default();
+        let adds_up = shares.iter().all(|&share| share >= 0.0) && shares[2] + shares[3] <= 1.0;
+        rule(adds_up, "the weights make light")?;
         let emits = material.emission.is_finite() && material.emission.min_element() >= 0.0;
         rule(emits, "an emission is not a colour")?;
     }
@@ -107,13 +123,19 @@ pub fn sound(model: &Model) -> Result<(), &'static str> {
     let view = camera.look_at - camera.position;
     let sees = view.is_finite() && view.abs().max_element() > 0.0;
     rule(sees, "the camera looks nowhere")?;
-    rule(camera.fov_y > 0.0 && camera.fov_y < std::f64::consts::PI, "the view has no angle")?;
+    let opens = match camera.projection {
+        Projection::Perspective { fov_y } => fov_y > 0.0 && fov_y < std::f64::consts::PI,
+        Projection::Orthographic { height } => height.is_finite() && height > 0.0,
+    };
+    rule(opens, "the view has no angle")?;
     rule(camera.up.is_finite() && camera.up.abs().max_element() > 0.0, "there is no up")?;
     rule(model.render.size.iter().all(|side| (1..=16384).contains(side)), "no such picture")
 }
 
 #[cfg(test)]
 mod tests {
+    use host_tools::model::{Checker, Lobe, Specular, Sphere};
+
     use super::*;
 
     #[test]
@@ -132,12 +154,24 @@ mod tests {
         assert_eq!(bad(&|m| m.triangles[0].vertices[1] = 3), "a vertex is out of range");
         assert_eq!(bad(&|m| m.triangles[0].normals = Some([0, 0, 1])), "a normal is out of range");
         assert_eq!(bad(&|m| m.materials.clear()), "a material is out of range");
-        assert_eq!(bad(&|m| m.materials[0].diffuse.y = 1.1), "a reflectance is not in [0, 1]");
+        assert_eq!(bad(&|m| m.materials[0].colour.y = 1.1), "a reflectance is not in [0, 1]");
         assert_eq!(bad(&|m| m.materials[0].emission.y = -1.0), "an emission is not a colour");
         assert_eq!(bad(&|m| m.lights.clear()), "there is no light");
         assert_eq!(bad(&|m| m.lights[0].radiance.x = -1.0), "a radiance is not a colour");
         assert_eq!(bad(&|m| m.camera.look_at = m.camera.position), "the camera looks nowhere");
-        assert_eq!(bad(&|m| m.camera.fov_y = 4.0), "the view has no angle");
+        for projection in [Projection::Perspective { fov_y: 4.0 }, Projection::Orthographic { height: 0.0 }] {
+            assert_eq!(bad(&|m| m.camera.projection = projection), "the view has no angle");
+        }
+        assert_eq!(bad(&|m| m.materials[0].ior = 0.0), "an index of refraction is not above 0");
+        assert_eq!(bad(&|m| m.materials[0].weights = Some([0.0, 0.0, 1.0, 0.5])), "the weights make light");
+        let specular = Specular { lobe: Lobe::Phong, exponent: 0, colour: DVec3::ONE };
+        assert_eq!(bad(&|m| m.materials[0].specular = Some(specular)), "an exponent is 0");
+        let checker = Checker { size: 0.0, other: DVec3::ONE };
+        assert_eq!(bad(&|m| m.materials[0].checker = Some(checker)), "a checker has no size");
+        assert_eq!(bad(&|m| m.colours = vec![DVec3::ONE]), "colours are not of vertices");
+        assert_eq!(bad(&|m| m.uvs = vec![None; 2]), "texture coordinates are not of triangles");
+        let point = Sphere { centre: DVec3::ZERO, radius: 0.0, material: 0 };
+        assert_eq!(bad(&|m| m.spheres.push(point)), "a sphere is none");
         assert_eq!(bad(&|m| m.camera.up = Default::default()), "there is no up");
         assert_eq!(bad(&|m| m.render.size[0] = 0), "no such picture");
     }

@@ -7,7 +7,7 @@ pub use vast_ground::vast_ground;
 use glam::DVec3;
 use host_tools::builtin;
 use host_tools::import::{self, Embedded};
-use host_tools::model::{Camera, Light, LightKind, Material, Model, RenderSettings, Transfer, Triangle};
+use host_tools::model::{Camera, Light, LightKind, Material, Model, Projection, RenderSettings, Transfer, Triangle};
 
 use crate::{meshes, shared};
 
@@ -31,7 +31,7 @@ pub fn all() -> Vec<(&'static str, Model)> {
 }
 
 fn white() -> Material {
-    Material { name: "white".into(), diffuse: DVec3::ONE, emission: DVec3::ZERO }
+    Material { name: "white".into(), colour: DVec3::ONE, ..Material::default() }
 }
 
 /// A mesh of the oracle's kind, seen and lit from outside.
@@ -45,13 +45,18 @@ fn of(mesh: &[[[i64; 3]; 3]], size: [u32; 2]) -> Model {
     let eye = DVec3::new(1.4, 1.2, 2.3);
     Model {
         positions,
-        normals: Vec::new(),
         triangles,
         materials: vec![white()],
-        lights: vec![Light { kind: LightKind::Point(DVec3::new(0.2, 2.0, 1.8)), radiance: DVec3::ONE }],
-        camera: Camera { position: eye, look_at: centre, up: DVec3::Y, fov_y: 0.6 },
-        background: DVec3::new(0.05, 0.1, 0.2),
-        render: RenderSettings { size, ambient: DVec3::ZERO, transfer: Transfer::Srgb },
+        lights: vec![Light::new(LightKind::Point(DVec3::new(0.2, 2.0, 1.8)), DVec3::ONE)],
+        camera: Camera {
+            position: eye,
+            look_at: centre,
+            up: DVec3::Y,
+            projection: Projection::Perspective { fov_y: 0.6 },
+        },
+        background: DVec3::new(0.05, 0.1, 0.2).into(),
+        render: RenderSettings { size, ..RenderSettings::default() },
+        ..Model::default()
     }
 }
 
@@ -62,8 +67,7 @@ fn flat() -> Model {
 /// Directional light and ambient light; a sphere that shades itself.
 fn sun() -> Model {
     let mut model = of(&meshes::sphere(10, 6), [96, 64]);
-    model.lights =
-        vec![Light { kind: LightKind::Directional(DVec3::new(-1.0, -2.0, -0.5)), radiance: DVec3::new(1.0, 0.9, 0.7) }];
+    model.lights = vec![Light::new(LightKind::Directional(DVec3::new(-1.0, -2.0, -0.5)), DVec3::new(1.0, 0.9, 0.7))];
     model.render.ambient = DVec3::splat(0.05);
     model
 }
@@ -73,16 +77,19 @@ fn several_lights() -> Model {
     let mut model = of(&meshes::cuboid([100, 100, 100], [900, 700, 800]), [96, 64]);
     model.materials = vec![
         white(),
-        Material { name: "red".into(), diffuse: DVec3::new(0.8, 0.1, 0.05), emission: DVec3::ZERO },
-        Material { name: "glow".into(), diffuse: DVec3::ZERO, emission: DVec3::new(0.0, 0.3, 0.6) },
+        Material { name: "red".into(), colour: DVec3::new(0.8, 0.1, 0.05), ..Material::default() },
+        Material {
+            name: "glow".into(),
+            colour: DVec3::ZERO,
+            emission: DVec3::new(0.0, 0.3, 0.6),
+            ..Material::default()
+        },
     ];
     for (i, triangle) in (0..).zip(&mut model.triangles) {
         triangle.material = i % 3;
     }
-    model.lights.push(Light { kind: LightKind::Point(DVec3::new(2.0, 0.5, 0.5)), radiance: DVec3::splat(0.25) });
-    model
-        .lights
-        .push(Light { kind: LightKind::Directional(DVec3::new(0.0, 0.0, -1.0)), radiance: DVec3::new(0.0, 3.0, 0.0) });
+    model.lights.push(Light::new(LightKind::Point(DVec3::new(2.0, 0.5, 0.5)), DVec3::splat(0.25)));
+    model.lights.push(Light::new(LightKind::Directional(DVec3::new(0.0, 0.0, -1.0)), DVec3::new(0.0, 3.0, 0.0)));
     model
 }
 
@@ -103,8 +110,8 @@ pub fn inside(n: i64) -> Model {
     let mut model = of(&meshes::sphere(10, n), [96, 64]);
     model.camera.position = DVec3::splat(0.5);
     model.camera.look_at = DVec3::new(0.9, 0.6, 0.2);
-    model.camera.fov_y = 1.9;
-    model.background = DVec3::new(1.0, 0.0, 1.0);
+    model.camera.projection = Projection::Perspective { fov_y: 1.9 };
+    model.background = DVec3::new(1.0, 0.0, 1.0).into();
     model.lights[0].kind = LightKind::Point(DVec3::splat(0.45));
     model
 }

@@ -42,7 +42,7 @@ struct Truth {
 /// The scene at the size of this run, before a background that no surface has.
 fn staged(mut model: Model) -> Model {
     model.render.size = if tests::effort() > 1 { [1024, 1024] } else { [256, 256] };
-    model.background = glam::DVec3::new(1.0, 0.0, 1.0);
+    model.background = glam::DVec3::new(1.0, 0.0, 1.0).into();
     model
 }
 

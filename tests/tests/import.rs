@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use host_tools::import::{Embedded, Imported, load, load_from};
-use host_tools::model::{LightKind, Transfer};
+use host_tools::model::{LightKind, Model, Projection, Transfer};
 
 /// An OBJ with the corners (0, 0, 0) and (2, 2, 2).
 const ROOM: &[u8] = b"v 0 0 0\nv 2 0 0\nv 0 2 2\nusemtl wall\nf 1 2 3\n";
@@ -14,6 +14,14 @@ fn room(lines: &str) -> Imported {
     let toml = format!("model = 'room.obj'\n{lines}");
     let files = [("s.toml", toml.as_bytes()), ("room.obj", ROOM)];
     load_from(&Embedded(&files), "s.toml").unwrap()
+}
+
+/// Vertical field of view, radians; not a number of parallel rays.
+fn fov_y(model: &Model) -> f64 {
+    match model.camera.projection {
+        Projection::Perspective { fov_y } => fov_y,
+        Projection::Orthographic { .. } => f64::NAN,
+    }
 }
 
 fn warnings(imported: &Imported) -> Vec<String> {
@@ -63,7 +71,7 @@ fn a_scene_on_disk_finds_its_files_beside_it() {
     let imported = load(&at("s.toml")).unwrap();
     let material = &imported.model.materials[0];
     assert_eq!(material.name, "wall");
-    assert_eq!(material.diffuse, DVec3::new(0.1, 0.2, 0.3));
+    assert_eq!(material.colour, DVec3::new(0.1, 0.2, 0.3));
     assert_eq!(material.emission, DVec3::new(4.0, 5.0, 6.0));
     let (obj, gone) = (at("meshes/Room.OBJ"), at("meshes/gone.mtl"));
     let expected = format!(
@@ -85,11 +93,11 @@ fn a_bare_obj_is_framed() {
     assert!((model.camera.position - position).length() < 1e-12);
     assert_eq!(model.camera.look_at, DVec3::ONE);
     assert_eq!(model.camera.up, DVec3::Y);
-    assert!((model.camera.fov_y - 0.698_131_700_797_731_8).abs() < 1e-15);
+    assert!((fov_y(&model) - 0.698_131_700_797_731_8).abs() < 1e-15);
     assert_eq!(model.lights.len(), 1);
     assert_eq!(model.lights[0].kind, LightKind::Point(model.camera.position));
     assert_eq!(model.lights[0].radiance, DVec3::ONE);
-    assert_eq!(model.background, DVec3::ZERO);
+    assert_eq!(model.background, DVec3::ZERO.into());
     assert_eq!(model.render.size, [640, 480]);
     assert_eq!(model.render.ambient, DVec3::ZERO);
     assert_eq!(model.render.transfer, Transfer::Srgb);
@@ -113,16 +121,16 @@ fn the_settings_of_a_scene_reach_the_model() {
     assert_eq!(model.camera.position, DVec3::new(0.0, 1.0, 5.0));
     assert_eq!(model.camera.look_at, DVec3::Y);
     assert_eq!(model.camera.up, DVec3::new(0.0, 2.0, 1.0));
-    assert_eq!(model.camera.fov_y, std::f64::consts::FRAC_PI_2);
+    assert_eq!(fov_y(&model), std::f64::consts::FRAC_PI_2);
     assert_eq!(model.lights[0].kind, LightKind::Point(DVec3::new(0.0, 2.0, 1.0)));
     assert_eq!(model.lights[0].radiance, DVec3::new(4.0, 2.0, 0.0));
     assert_eq!(model.lights[1].kind, LightKind::Directional(DVec3::new(0.0, -3.0, 0.0)));
     assert_eq!(model.lights[1].radiance, DVec3::ONE);
-    assert_eq!(model.background, DVec3::new(0.1, 0.2, 0.3));
+    assert_eq!(model.background, DVec3::new(0.1, 0.2, 0.3).into());
     assert_eq!(model.render.size, [320, 200]);
     assert_eq!(model.render.ambient, DVec3::new(0.4, 0.5, 0.6));
     assert_eq!(model.render.transfer, Transfer::Linear);
-    assert_eq!(model.materials[0].diffuse, DVec3::new(0.0, 0.5, 1.0));
+    assert_eq!(model.materials[0].colour, DVec3::new(0.0, 0.5, 1.0));
 }
 
 /// Folder and scene file; triangles, smooth triangles, materials and warnings.

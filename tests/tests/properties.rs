@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 use host_tools::engine::ENGINES;
-use host_tools::model::{Camera, Light, LightKind, Material, Model, RenderSettings, Transfer, Triangle};
+use host_tools::model::{Camera, Light, LightKind, Material, Model, Projection, RenderSettings, Transfer, Triangle};
 use host_tools::prepare::Options;
 use host_tools::tree::TreeOptions;
 use proptest::prelude::*;
@@ -25,7 +25,7 @@ fn colour() -> impl Strategy<Value = DVec3> {
 fn light() -> impl Strategy<Value = Light> {
     let kind = prop_oneof![point().prop_map(LightKind::Point), direction().prop_map(LightKind::Directional)];
     (kind, colour(), -40..40)
-        .prop_map(|(kind, colour, exponent)| Light { kind, radiance: colour * libm::exp2(f64::from(exponent)) })
+        .prop_map(|(kind, colour, exponent)| Light::new(kind, colour * libm::exp2(f64::from(exponent))))
 }
 
 fn model() -> impl Strategy<Value = Model> {
@@ -39,20 +39,26 @@ fn model() -> impl Strategy<Value = Model> {
         let triangle = (corners(positions.len()), prop::option::of(corners(normals.len())), 0..materials.len() as u32)
             .prop_map(|(vertices, normals, material)| Triangle { vertices, normals, material });
         let camera = (point(), direction(), direction(), 0.001..3.1)
-            .prop_map(|(position, forward, up, fov_y)| Camera { position, look_at: position + forward, up, fov_y })
+            .prop_map(|(position, forward, up, fov_y)| Camera {
+                position,
+                look_at: position + forward,
+                up,
+                projection: Projection::Perspective { fov_y },
+            })
             .prop_filter("the importer refuses a view without a frame", has_frame);
         let transfer = prop_oneof![Just(Transfer::Srgb), Just(Transfer::Linear)];
         let render = ([1u32..40, 1u32..40], colour(), transfer).prop_map(|(size, ambient, transfer)| RenderSettings {
             size,
             ambient,
             transfer,
+            ..RenderSettings::default()
         });
         let lights = prop::collection::vec(light(), 0..4);
         let triangles = prop::collection::vec(triangle, 1..60);
         (triangles, lights, camera, colour(), render).prop_map(
             move |(triangles, lights, camera, background, render)| {
                 let material =
-                    |&(diffuse, emission): &(DVec3, DVec3)| Material { name: String::new(), diffuse, emission };
+                    |&(colour, emission): &(DVec3, DVec3)| Material { colour, emission, ..Material::default() };
                 Model {
                     positions: positions.clone(),
                     normals: normals.clone(),
@@ -60,8 +66,9 @@ fn model() -> impl Strategy<Value = Model> {
                     materials: materials.iter().map(material).collect(),
                     lights,
                     camera,
-                    background,
+                    background: background.into(),
                     render,
+                    ..Model::default()
                 }
             },
         )

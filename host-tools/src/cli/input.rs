@@ -18,7 +18,7 @@ use crate::files;
 use crate::import::{self, Imported};
 use crate::model::Model;
 use crate::picture::{SIZES, size_is_allowed};
-use crate::prepare::{Blob, Degenerates, Options, losses};
+use crate::prepare::{Blob, Degenerates, Options, losses, missing};
 use crate::tree::TreeOptions;
 
 /// A scene, and how it is prepared.
@@ -145,6 +145,7 @@ impl SceneArguments {
     /// Reads and prepares a model for the kernel asked for.
     fn load_model(&self, default: &'static dyn Engine) -> Result<Scene, Failure> {
         let model = self.model()?;
+        missing(&model).iter().for_each(|what| warn(format_args!("{}: {what}", self.scene.display())));
         let engine = self.engine().unwrap_or(default);
         let prepared = engine
             .prepare(&model, &self.options())

@@ -7,7 +7,7 @@ use super::document::Document;
 use super::error::ImportError;
 use super::schema::{CameraToml, ProjectionToml};
 use super::{LARGEST, SMALLEST};
-use crate::model::Camera;
+use crate::model::{Camera, Projection, Sphere};
 
 /// Vertical field of view where none is given, degrees.
 const FOV_Y: f64 = 40.0;
@@ -15,7 +15,7 @@ const FOV_Y: f64 = 40.0;
 /// picture.
 const PARALLEL: f64 = 1e-9;
 
-/// The bounding box of a scene's vertices, of some extent.
+/// The bounding box of a scene's vertices and spheres, of some extent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Bounds {
     /// Least coordinates, scene units.
@@ -28,11 +28,12 @@ pub(super) struct Bounds {
 const TOWARDS_CAMERA: DVec3 = DVec3::new(1.0, 0.75, 1.5);
 
 impl Bounds {
-    /// The box around some points; around none, a point at the origin.
-    pub(super) fn of(points: &[DVec3]) -> Self {
-        let first = points.first().copied().unwrap_or_default();
-        let around = |b: Self, &p: &DVec3| Self { low: b.low.min(p), high: b.high.max(p) };
-        points.iter().fold(Self { low: first, high: first }, around)
+    /// The box around some points and spheres; around none, a point at the origin.
+    pub(super) fn of(points: &[DVec3], spheres: &[Sphere]) -> Self {
+        let ends = spheres.iter().flat_map(|sphere| [sphere.centre - sphere.radius, sphere.centre + sphere.radius]);
+        let mut points = points.iter().copied().chain(ends);
+        let first = points.next().unwrap_or_default();
+        points.fold(Self { low: first, high: first }, |b, p| Self { low: b.low.min(p), high: b.high.max(p) })
     }
 
     /// The length of the diagonal, scene units.
@@ -61,26 +62,16 @@ impl Document {
         let none = Spanned::new(0..0, CameraToml::default());
         let table = self.scene.camera.as_ref().unwrap_or(&none);
         let camera = table.get_ref();
-        if let Some(projection) = &camera.projection
-            && let ProjectionToml::Orthographic = projection.get_ref()
-        {
-            let message = "orthographic projection is not supported yet; use \"perspective\"";
-            return Err(self.error(projection.span(), message));
-        }
-        if let Some(height) = &camera.height {
-            let message = "height goes with an orthographic projection; use fov_y";
-            return Err(self.error(height.span(), message));
-        }
-        let degrees = camera.fov_y.as_ref().map_or(FOV_Y, |fov_y| fov_y.get_ref().0);
-        let place = camera.fov_y.as_ref().map_or(table.span(), Spanned::span);
-        if !(degrees > 0.0 && degrees < 180.0) {
-            let message = format!("fov_y of {degrees} degrees; it must be above 0 and below 180");
-            return Err(self.error(place, message));
-        }
-        let fov_y = degrees.to_radians();
+        let projection = self.projection(table)?;
+        let place = camera.fov_y.as_ref().or(camera.height.as_ref()).map_or(table.span(), Spanned::span);
         let (position, look_at) = match (&camera.position, &camera.look_at) {
             (Some(position), Some(look_at)) => (self.point(position)?, self.point(look_at)?),
             (None, None) => {
+                // Parallel rays start from where the default field of view would see it all.
+                let fov_y = match projection {
+                    Projection::Perspective { fov_y } => fov_y,
+                    Projection::Orthographic { .. } => FOV_Y.to_radians(),
+                };
                 let position = bounds
                     .camera_position(fov_y)
                     .ok_or_else(|| self.error(place, "fov_y is too narrow to frame the scene; give a position"))?;
@@ -107,7 +98,41 @@ impl Document {
             let message = "up is parallel to the view; give an up that is upwards in the picture";
             return Err(self.error(place, message));
         }
-        Ok(Camera { position, look_at, up, fov_y })
+        Ok(Camera { position, look_at, up, projection })
+    }
+
+    /// How the camera's rays go.
+    fn projection(&self, table: &Spanned<CameraToml>) -> Result<Projection, ImportError> {
+        let camera = table.get_ref();
+        match (camera.projection, &camera.fov_y, &camera.height) {
+            (None | Some(ProjectionToml::Perspective), fov_y, None) => {
+                let degrees = fov_y.as_ref().map_or(FOV_Y, |fov_y| fov_y.get_ref().0);
+                if !(degrees > 0.0 && degrees < 180.0) {
+                    let place = fov_y.as_ref().map_or(table.span(), Spanned::span);
+                    let message = format!("fov_y of {degrees} degrees; it must be above 0 and below 180");
+                    return Err(self.error(place, message));
+                }
+                Ok(Projection::Perspective { fov_y: degrees.to_radians() })
+            }
+            (None | Some(ProjectionToml::Perspective), _, Some(height)) => {
+                Err(self.error(height.span(), "height goes with an orthographic projection; use fov_y"))
+            }
+            (Some(ProjectionToml::Orthographic), None, Some(height)) => {
+                let value = height.get_ref().0;
+                if !(SMALLEST..=LARGEST).contains(&value) {
+                    let message = format!("height of {value}; it must be above 0 and at most {LARGEST:e}");
+                    return Err(self.error(height.span(), message));
+                }
+                Ok(Projection::Orthographic { height: value })
+            }
+            (Some(ProjectionToml::Orthographic), Some(fov_y), _) => {
+                Err(self.error(fov_y.span(), "fov_y goes with a perspective projection; use height"))
+            }
+            (Some(ProjectionToml::Orthographic), None, None) => {
+                let message = "an orthographic camera has a height: what the picture's is in the scene";
+                Err(self.error(table.span(), message))
+            }
+        }
     }
 }
 
@@ -123,7 +148,7 @@ mod tests {
 
     #[test]
     fn the_sphere_around_the_box_touches_the_edge_of_the_view() {
-        let bounds = Bounds::of(&[DVec3::new(3.0, -1.0, 2.0), DVec3::new(1.0, 1.0, 3.0)]);
+        let bounds = Bounds::of(&[DVec3::new(3.0, -1.0, 2.0), DVec3::new(1.0, 1.0, 3.0)], &[]);
         assert_eq!(bounds.centre(), DVec3::new(2.0, 0.0, 2.5));
         assert_eq!(bounds.diagonal(), 3.0);
         let fov = 40f64.to_radians();
@@ -135,7 +160,7 @@ mod tests {
 
     #[test]
     fn a_view_too_narrow_to_stand_back_from_is_none() {
-        let bounds = Bounds::of(&[DVec3::ZERO, DVec3::ONE]);
+        let bounds = Bounds::of(&[DVec3::ZERO, DVec3::ONE], &[]);
         assert_eq!(bounds.camera_position(1e-40), None);
         assert_eq!(bounds.camera_position(0.0), None);
     }
@@ -164,7 +189,15 @@ mod tests {
             ("[camera]\nfov_y = 1e-300", "3: fov_y is too narrow to frame the scene; give a position"),
             (
                 "[camera]\nprojection = 'orthographic'",
-                "3: orthographic projection is not supported yet; use \"perspective\"",
+                "2: an orthographic camera has a height: what the picture's is in the scene",
+            ),
+            (
+                "[camera]\nprojection = 'orthographic'\nheight = 2\nfov_y = 40",
+                "5: fov_y goes with a perspective projection; use height",
+            ),
+            (
+                "[camera]\nprojection = 'orthographic'\nheight = 0",
+                "4: height of 0; it must be above 0 and at most 1e30",
             ),
             ("[camera]\nheight = 2", "3: height goes with an orthographic projection; use fov_y"),
         ]);
@@ -177,5 +210,19 @@ mod tests {
         assert!((distance - 2.0 * 3f64.sqrt()).abs() < 1e-12, "sqrt 3 / sin 30 degrees");
         assert_eq!(camera.look_at, DVec3::ONE);
         assert_eq!(camera.up, DVec3::Z);
+    }
+
+    #[test]
+    fn a_camera_of_parallel_rays_has_the_height_that_it_is_given() {
+        let camera = room("[camera]\nprojection = 'orthographic'\nheight = 3").unwrap().model.camera;
+        assert_eq!(camera.projection, Projection::Orthographic { height: 3.0 });
+        assert_eq!(camera.look_at, DVec3::ONE);
+    }
+
+    #[test]
+    fn spheres_are_in_view() {
+        let ball = Sphere { centre: DVec3::ONE, radius: 2.0, material: 0 };
+        let both = Bounds::of(&[DVec3::X * 9.0], &[ball]);
+        assert_eq!((both.low, both.high), (DVec3::new(-1.0, -1.0, -1.0), DVec3::new(9.0, 3.0, 3.0)));
     }
 }

@@ -1,7 +1,7 @@
 //! A parsed `scene.toml` with its text, so that every error has its line; and the checks of single
 //! values.
 
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 use glam::DVec3;
 use toml::Spanned;
@@ -47,22 +47,22 @@ impl Document {
         Ok(Self { file, scene, text })
     }
 
-    /// The name of the OBJ, as the scene file `name` gives it.
+    /// The name of the OBJ, as the scene file `name` gives it; `None` of a scene of spheres alone.
     ///
     /// # Errors
-    /// No such key, no such file, or not an OBJ; and a scene of spheres.
-    pub(super) fn model(&self, source: &dyn Source, name: &str) -> Result<String, ImportError> {
-        if let Some(sphere) = self.scene.sphere.first() {
-            return Err(self.error(sphere.span(), "spheres are not supported yet"));
-        }
+    /// Nothing to see, no such file, or not an OBJ.
+    pub(super) fn model(&self, source: &dyn Source, name: &str) -> Result<Option<String>, ImportError> {
         let Some(model) = &self.scene.model else {
+            if !self.scene.sphere.is_empty() {
+                return Ok(None);
+            }
             let message = "`model` is missing; name an OBJ file, such as model = \"room.obj\"";
             return Err(self.error(0..0, message));
         };
         let obj = beside(name, model.get_ref());
         let wrong = match source.open(&obj) {
             _ if extension(&obj) != "obj" => "a model is an .obj file".into(),
-            Ok(_) => return Ok(obj),
+            Ok(_) => return Ok(Some(obj)),
             Err(error) => reason(&error),
         };
         Err(self.error(model.span(), format!("model {}: {wrong}", source.describe(&obj))))
@@ -78,13 +78,20 @@ impl Document {
         ImportError::line(&self.file, self.line(place), message)
     }
 
-    /// A whole number, not less than `least`.
-    pub(super) fn count(&self, key: &str, least: f64, value: &Spanned<Number>) -> Result<f64, ImportError> {
+    /// A whole number in a range.
+    pub(super) fn count(
+        &self,
+        key: &str,
+        range: RangeInclusive<u32>,
+        value: &Spanned<Number>,
+    ) -> Result<u32, ImportError> {
         let Number(number) = *value.get_ref();
-        if number >= least && number.fract() == 0.0 {
-            return Ok(number);
+        // Casting saturates, and what it changes is no whole number of the range.
+        let whole = number as u32;
+        if f64::from(whole) == number && range.contains(&whole) {
+            return Ok(whole);
         }
-        let message = format!("{key} of {number}; it must be a whole number from {least}");
+        let message = format!("{key} of {number}; it must be a whole number from {} to {}", range.start(), range.end());
         Err(self.error(value.span(), message))
     }
 
@@ -211,7 +218,6 @@ mod tests {
             ("transfer = 'srgb'", missing),
             ("\nmodel = 'no.obj'", "2: model built-in no.obj: no such file"),
             ("model = 'room.ply'", "1: model built-in room.ply: a model is an .obj file"),
-            ("model = 'room.obj'\n[[sphere]]\ncentre = [0, 1, 0]\nradius = 0.5", "2: spheres are not supported yet"),
         ];
         for (text, expected) in cases {
             let expected = format!("built-in s.toml:{expected}");

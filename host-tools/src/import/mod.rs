@@ -5,19 +5,22 @@
 //! | `source` | where files come from |
 //! | `lines` | text to statements, and the checked stream that `tobj` reads |
 //! | `scan`, `obj` | the check of an OBJ; its geometry |
-//! | `mtl` | colours |
+//! | `mtl`, `statement`, `looks` | what an MTL says, the check of it, and what it looks like |
+//! | `texture` | picture files |
 //! | `schema` | the keys of a `scene.toml` |
 //! | `document` | its text, so that an error has a line; checks of single values |
-//! | `camera`, `setting`, `materials` | what its tables mean, with the defaults |
+//! | `camera`, `setting`, `materials`, `change`, `sphere` | what its tables mean, with the defaults |
 //! | `error` | errors and warnings |
 //!
 //! What cannot be drawn as meant is an error; what is drawn in a simpler way is a [`Warning`].
 //! Whatever the bytes, nothing panics: the fuzz targets `obj` and `scene_toml` hold it to that.
 
 mod camera;
+mod change;
 mod document;
 mod error;
 mod lines;
+mod looks;
 mod materials;
 mod mtl;
 mod obj;
@@ -25,14 +28,19 @@ mod scan;
 mod schema;
 mod setting;
 mod source;
+mod sphere;
+mod statement;
 #[cfg(test)]
 mod testing;
+mod texture;
 
 use std::io;
 use std::path::Path;
 
 use camera::Bounds;
 use document::Document;
+use materials::Names;
+use obj::Mesh;
 
 pub use error::{ImportError, Warning};
 pub use source::{Embedded, Folder, Source};
@@ -79,37 +87,48 @@ pub fn load(path: &Path) -> Result<Imported, ImportError> {
 pub fn load_from(source: &dyn Source, name: &str) -> Result<Imported, ImportError> {
     let file = source.describe(name);
     match extension(name).as_str() {
-        "obj" => assemble(source, name, &Document::absent(file)),
+        "obj" => assemble(source, Some(name), &Document::absent(file)),
         "toml" => {
             let contents = source.read(name).map_err(|error| ImportError::unreadable(&file, error))?;
             let document = Document::parse(file, contents)?;
             let obj = document.model(source, name)?;
-            assemble(source, &obj, &document)
+            assemble(source, obj.as_deref(), &document)
         }
         _ => Err(ImportError::Extension { file }),
     }
 }
 
-/// The model of an OBJ under the settings of a scene file.
-fn assemble(source: &dyn Source, obj: &str, document: &Document) -> Result<Imported, ImportError> {
+/// The model of an OBJ, if there is one, under the settings of a scene file.
+fn assemble(source: &dyn Source, obj: Option<&str>, document: &Document) -> Result<Imported, ImportError> {
     let mut warnings = Vec::new();
-    let mesh = obj::read(source, obj, &mut warnings)?;
-    let bounds = Bounds::of(&mesh.positions);
-    if bounds.diagonal() < SMALLEST {
+    let mut mesh = match obj {
+        Some(obj) => obj::read(source, obj, &mut warnings)?,
+        None => Mesh::default(),
+    };
+    let mut names = Names::of_faces(&mesh);
+    let spheres = document.spheres(&mut names)?;
+    let bounds = Bounds::of(&mesh.positions, &spheres);
+    if let Some(obj) = obj.filter(|_| bounds.diagonal() < SMALLEST) {
         let [x, y, z] = bounds.low.to_array();
         return Err(ImportError::NoExtent { file: source.describe(obj), x, y, z });
     }
-    let materials = document.materials(source, obj, &mesh, &mut warnings)?;
+    let materials = document.materials(source, obj, &mesh, &names, &mut warnings)?;
+    if let Some(obj) = obj {
+        mesh.keep_textured(&materials, &source.describe(obj), &mut warnings);
+    }
     let camera = document.camera(bounds)?;
     let model = Model {
         positions: mesh.positions,
+        colours: mesh.colours,
         normals: mesh.normals,
         triangles: mesh.triangles,
+        uvs: mesh.uvs,
+        spheres,
         materials,
         lights: document.lights(&camera)?,
         camera,
         background: document.background()?,
-        render: document.render(&mut warnings)?,
+        render: document.render()?,
     };
     Ok(Imported { model, warnings })
 }

@@ -1,4 +1,4 @@
-//! MTL: the colours of materials, by `tobj` behind a check of our own.
+//! MTL: what a file says of its materials, by `tobj` behind a check of our own.
 //!
 //! Nothing that is wrong in a material ends an import: it is said in a warning, and the material
 //! keeps its default, so that the picture shows a shape in grey and never silently nothing.
@@ -8,29 +8,34 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::beside;
-use super::error::{ImportError, Warning, excerpt, reason};
-use super::lines::{Check, Checked, Lines, Statement, number};
+use super::error::{ImportError, Warning, reason};
+use super::lines::{Check, Checked, Lines, number};
 use super::scan::Named;
 use super::source::Source;
+use super::statement::check;
+use crate::model::DEFAULT_DIFFUSE;
 
-/// The reflectance of what has none: a light grey.
-pub(super) const DEFAULT_DIFFUSE: f64 = 0.8;
-
-/// What an MTL file says of a material.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// What an MTL file says of a material; `None` where it says nothing.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Entry {
     /// `Kd`, linear RGB in [0, 1].
-    pub diffuse: DVec3,
+    pub diffuse: Option<DVec3>,
     /// `Ke`, linear RGB, not negative.
-    pub emission: DVec3,
-    /// Whether it is an opaque surface of one colour: neither `d`, `Tr` nor `map_Kd` say otherwise.
-    pub plain: bool,
-}
-
-impl Default for Entry {
-    fn default() -> Self {
-        Self { diffuse: DVec3::splat(DEFAULT_DIFFUSE), emission: DVec3::ZERO, plain: true }
-    }
+    pub emission: Option<DVec3>,
+    /// `Ks`, linear RGB in [0, 1].
+    pub specular: Option<DVec3>,
+    /// `Tf`, linear RGB in [0, 1].
+    pub filter: Option<DVec3>,
+    /// `Ns`, whole, from 1.
+    pub exponent: Option<u32>,
+    /// `Ni`, in [`IORS`](super::statement::IORS).
+    pub ior: Option<f64>,
+    /// `Tr`, or 1 - `d`, which holds of both, in [0, 1].
+    pub transparency: f64,
+    /// `illum`, up to 10.
+    pub illum: Option<u8>,
+    /// `map_Kd`: a name as in the source.
+    pub texture: Option<String>,
 }
 
 /// Materials by name. Of two with the same name the later one holds.
@@ -42,7 +47,7 @@ pub(super) fn read(source: &dyn Source, obj: &str, libraries: &[Named], warnings
     for named in libraries {
         for name in files(source, obj, &named.name) {
             match Lines::open(source, &name) {
-                Ok(lines) => library.extend(parse(lines, warnings)),
+                Ok(lines) => library.extend(parse(lines, &name, warnings)),
                 Err(error) => {
                     let (file, reason) = (source.describe(&name), reason(&error));
                     let message = format!(
@@ -65,15 +70,15 @@ fn files(source: &dyn Source, obj: &str, names: &str) -> Vec<String> {
     if !there(&whole) && several.iter().any(there) { several } else { vec![whole] }
 }
 
-/// Parses one file.
-fn parse(lines: Lines<'_>, warnings: &mut Vec<Warning>) -> Library {
+/// Parses the file `name`.
+fn parse(lines: Lines<'_>, name: &str, warnings: &mut Vec<Warning>) -> Library {
     let check = MtlCheck { lines, material: None, warnings };
     let mut statements = Checked::new(check);
     let parsed = tobj::load_mtl_buf(&mut statements);
     let MtlCheck { lines, warnings, .. } = statements.check;
     let failure = match (parsed, statements.failure) {
         (Ok((materials, _)), _) => {
-            return materials.iter().map(|m| (m.name.clone(), entry(m))).collect();
+            return materials.iter().map(|m| (m.name.clone(), entry(m, name))).collect();
         }
         (Err(_), Some(failure)) => failure.to_string(),
         (Err(error), None) => format!("{}: {error}", lines.file),
@@ -82,15 +87,23 @@ fn parse(lines: Lines<'_>, warnings: &mut Vec<Warning>) -> Library {
     Library::new()
 }
 
-fn entry(material: &tobj::Material) -> Entry {
-    let default = Entry::default();
-    // `tobj` knows `d` but not its complement.
-    let transmission = material.unknown_param.get("Tr").and_then(|word| number(word).ok());
-    let opaque = material.dissolve.is_none_or(|d| d >= 1.0) && transmission.is_none_or(|t| t <= 0.0);
+/// What passed the check, of a material in the file `name`.
+fn entry(material: &tobj::Material, name: &str) -> Entry {
+    // What `tobj` does not know it keeps as text.
+    let unknown = |keyword: &str| -> Option<Vec<f64>> {
+        material.unknown_param.get(keyword)?.split_whitespace().map(|word| number(word).ok()).collect()
+    };
+    let opacity = material.dissolve.or_else(|| Some(1.0 - *unknown("Tr")?.first()?));
     Entry {
-        diffuse: material.diffuse.map_or(default.diffuse, DVec3::from_array),
-        emission: material.emissive.map_or(default.emission, DVec3::from_array),
-        plain: opaque && material.diffuse_texture.is_none(),
+        diffuse: material.diffuse.map(DVec3::from_array),
+        emission: material.emissive.map(DVec3::from_array),
+        specular: material.specular.map(DVec3::from_array),
+        filter: unknown("Tf").and_then(|filter| Some(DVec3::from_array(filter.try_into().ok()?))),
+        exponent: material.shininess.map(|exponent| exponent.round().max(1.0) as u32),
+        ior: material.optical_density,
+        transparency: 1.0 - opacity.unwrap_or(1.0),
+        illum: material.illumination_model,
+        texture: material.diffuse_texture.as_deref().map(|texture| beside(name, texture)),
     }
 }
 
@@ -117,64 +130,6 @@ impl Check for MtlCheck<'_, '_> {
     }
 }
 
-/// Appends a statement for `tobj` to `out`, if it is one that matters.
-///
-/// # Errors
-/// A warning: what is wrong and what is done about it. The statement may have been passed on.
-fn check(statement: &Statement<'_>, material: &mut Option<String>, out: &mut String) -> Result<(), String> {
-    let keyword = statement.keyword();
-    let word = statement.words().next().unwrap_or_default();
-    match keyword {
-        "newmtl" if statement.name().is_empty() => {
-            *material = None;
-            return Err("a material without a name is ignored".into());
-        }
-        "newmtl" => {
-            *material = Some(statement.name().into());
-            *out = format!("newmtl {}\n", statement.name());
-        }
-        "Kd" | "Ke" => {
-            let Some(name) = material else {
-                return Err(format!("{keyword} before any `newmtl` is ignored"));
-            };
-            let (default, largest) = if keyword == "Kd" { (DEFAULT_DIFFUSE, 1.0) } else { (0.0, f64::INFINITY) };
-            let given = colour(statement);
-            let used = given.clone().map_or([default; 3], |value| value.map(|v| v.min(largest)));
-            *out = format!("{keyword} {} {} {}\n", used[0], used[1], used[2]);
-            let name = excerpt(name);
-            match given {
-                Err(wrong) => {
-                    let message = format!("{keyword} of material `{name}`: {wrong}; drawn with {default}");
-                    return Err(message);
-                }
-                Ok(value) if value != used => {
-                    let message = format!("{keyword} of material `{name}` is over 1, and is cut to 1");
-                    return Err(message);
-                }
-                Ok(_) => {}
-            }
-        }
-        _ if material.is_none() => {}
-        "d" | "Tr" if number(word).is_ok() => *out = format!("{keyword} {word}\n"),
-        "map_Kd" if !word.is_empty() => *out = format!("map_Kd {}\n", statement.name()),
-        _ => {}
-    }
-    Ok(())
-}
-
-/// The colour after `Kd` or `Ke`: three numbers, or one for all three channels.
-fn colour(statement: &Statement<'_>) -> Result<[f64; 3], String> {
-    let values = statement.words().map(number).collect::<Result<Vec<f64>, String>>()?;
-    if let Some(negative) = values.iter().find(|&&v| v < 0.0) {
-        return Err(format!("{negative} is negative"));
-    }
-    match values[..] {
-        [all] => Ok([all; 3]),
-        [r, g, b] => Ok([r, g, b]),
-        _ => Err(format!("{} numbers where 3 are needed", values.len())),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -184,27 +139,49 @@ mod tests {
         let files = [("x.mtl", text)];
         let source = Embedded(&files);
         let mut warnings = Vec::new();
-        let library = parse(Lines::open(&source, "x.mtl").unwrap(), &mut warnings);
+        let library = parse(Lines::open(&source, "x.mtl").unwrap(), "s/x.mtl", &mut warnings);
         (library, warnings.iter().map(Warning::to_string).collect())
     }
 
     #[test]
-    fn colours_and_looks_are_read() {
+    fn what_a_file_says_is_read() {
         let (library, warnings) = library(
-            b"newmtl a b #1\nKd 0.1 0.2 0.3 # red\nKe 17 12 4\nillum 2\nNs junk\nKa nan\n\
-              newmtl grey\r\n\tKd .5\r\nd 1\r\nTr 0\r\nnewmtl glass\nd 0.3\nnewmtl film\nTr 0.3\n\
-              newmtl wood\nmap_Kd a b.png\nnewmtl halo\nd -halo 0.5\n",
+            b"newmtl a b #1\nKd 0.1 0.2 0.3 # red\nKe 17 12 4\nKs 0.5\nTf 1 0.9 0.8\nillum 7\nNs 96.08\nNi 1.45\nKa nan\n\
+              newmtl grey\r\n\tKd .5\r\nd 1\r\nTr 0\r\nnewmtl both\nTr 1\nd 0.75\nnewmtl film\nTr 0.25\nNs 0\n\
+              newmtl wood\nmap_Kd a b.png\nnewmtl halo\nd -halo 0.5\nnewmtl dull\nNs 10000\nmap_Kd t\\x.png\n",
         );
         assert_eq!(warnings, Vec::<String>::new());
-        let a = library["a b #1"];
-        assert_eq!(a.diffuse, DVec3::new(0.1, 0.2, 0.3));
-        assert_eq!(a.emission, DVec3::new(17.0, 12.0, 4.0));
-        let grey = Entry { diffuse: DVec3::splat(0.5), ..Entry::default() };
-        assert_eq!(library["grey"], grey);
+        let a = Entry {
+            diffuse: Some(DVec3::new(0.1, 0.2, 0.3)),
+            emission: Some(DVec3::new(17.0, 12.0, 4.0)),
+            specular: Some(DVec3::splat(0.5)),
+            filter: Some(DVec3::new(1.0, 0.9, 0.8)),
+            exponent: Some(96),
+            ior: Some(1.45),
+            illum: Some(7),
+            ..Entry::default()
+        };
+        assert_eq!(library["a b #1"], a);
+        assert_eq!(library["grey"], Entry { diffuse: Some(DVec3::splat(0.5)), ..Entry::default() });
         assert_eq!(library["halo"], Entry::default());
-        for name in ["glass", "film", "wood"] {
-            assert_eq!(library[name], Entry { plain: false, ..Entry::default() }, "{name}");
-        }
+        assert_eq!(library["both"].transparency, 0.25, "d holds");
+        assert_eq!(library["film"], Entry { transparency: 0.25, exponent: Some(1), ..Entry::default() });
+        assert_eq!(library["wood"].texture.as_deref(), Some("s/a b.png"));
+        assert_eq!(library["dull"].texture.as_deref(), Some("s/t/x.png"));
+    }
+
+    #[test]
+    fn options_of_textures_are_ignored_and_said() {
+        let file = |text: &str| {
+            let (library, warnings) = library(format!("newmtl m\nmap_Kd {text}").as_bytes());
+            (library["m"].texture.clone(), warnings.join("|"))
+        };
+        let said = |message: &str| format!("built-in x.mtl:2: map_Kd of material `m`: {message}");
+        let scaled = file("-s 2 2 1 -clamp on 3 woods.png");
+        assert_eq!(scaled, (Some("s/3 woods.png".into()), said("options are ignored: -s, -clamp")));
+        let absent = said("a file name is missing; drawn without a texture");
+        assert_eq!(file(""), (None, absent.clone()));
+        assert_eq!(file("-clamp"), (None, absent));
     }
 
     #[test]
@@ -223,7 +200,41 @@ mod tests {
         for (text, expected) in cases {
             let (library, warnings) = library(text);
             assert_eq!(warnings, [format!("built-in x.mtl:{expected}")]);
-            assert_eq!(library["m"], Entry::default(), "{expected}");
+            let m = &library["m"];
+            let (diffuse, emission) = (m.diffuse.unwrap_or(DVec3::splat(0.8)), m.emission.unwrap_or_default());
+            assert_eq!((diffuse, emission), (DVec3::splat(0.8), DVec3::ZERO), "{expected}");
+        }
+    }
+
+    #[test]
+    fn numbers_out_of_range_are_cut_or_left_out() {
+        let cases: [(&[u8], &str, Entry); 9] = [
+            (b"Ns 20000", "Ns of material `m` is 20000, and is cut to 10000", {
+                Entry { exponent: Some(10_000), ..Entry::default() }
+            }),
+            (b"Ns -3", "Ns of material `m`: -3 is below 0; drawn with 50", {
+                Entry { exponent: Some(50), ..Entry::default() }
+            }),
+            (b"Ns junk", "Ns of material `m`: `junk` is not a number; drawn with 50", {
+                Entry { exponent: Some(50), ..Entry::default() }
+            }),
+            (b"Ni 0", "Ni of material `m`: 0 is below 0.1; drawn with 1.5", {
+                Entry { ior: Some(1.5), ..Entry::default() }
+            }),
+            (b"Ni inf", "Ni of material `m`: `inf` is not a finite number; drawn with 1.5", {
+                Entry { ior: Some(1.5), ..Entry::default() }
+            }),
+            (b"d 1.5", "d of material `m` is 1.5, and is cut to 1", Entry::default()),
+            (b"Tr nan", "Tr of material `m`: `nan` is not a finite number; drawn with 0", Entry::default()),
+            (b"illum 11", "illum of material `m`: `11` is not from 0 to 10; ignored", Entry::default()),
+            (b"Ks 2 0 0", "Ks of material `m` is over 1, and is cut to 1", {
+                Entry { specular: Some(DVec3::X), ..Entry::default() }
+            }),
+        ];
+        for (line, expected, entry) in cases {
+            let (library, warnings) = library(&[b"newmtl m\n", line].concat());
+            assert_eq!(warnings, [format!("built-in x.mtl:2: {expected}")]);
+            assert_eq!(library["m"], entry, "{expected}");
         }
     }
 
@@ -231,7 +242,7 @@ mod tests {
     fn more_than_all_light_is_cut() {
         let (library, warnings) = library(b"newmtl m\nKd 0.5 1 1.5\n");
         assert_eq!(warnings, ["built-in x.mtl:2: Kd of material `m` is over 1, and is cut to 1"]);
-        assert_eq!(library["m"].diffuse, DVec3::new(0.5, 1.0, 1.0));
+        assert_eq!(library["m"].diffuse, Some(DVec3::new(0.5, 1.0, 1.0)));
     }
 
     #[test]

@@ -1,24 +1,29 @@
 //! OBJ: our check of every statement, then `tobj`'s parse of what passed, then a [`Mesh`].
 //!
 //! `tobj` splits its meshes at every group and material, numbers vertices anew in each, and fills
-//! in normals that a corner lacks. So it is shown `v`, `vn` and `f` statements alone, as one mesh:
+//! in normals that a corner lacks. So it is shown `v`, `vt`, `vn` and `f` statements alone, as one mesh:
 //! the order of the file and shared vertices survive, and the check notes which run of faces has
-//! which material and which of them have normals at all. Fans are `tobj`'s: corners (0, i, i + 1).
+//! which material and which of them have normals and texture coordinates at all. Fans are `tobj`'s: corners (0, i, i + 1).
 
 use std::iter;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::error::{ImportError, Warning, list};
 use super::lines::{Checked, Lines};
 use super::scan::{Faces, Named, ObjCheck};
 use super::source::Source;
-use crate::model::Triangle;
+use crate::model::{Material, Triangle};
 
 /// The geometry of an OBJ file, its materials by name only.
+#[derive(Default)]
 pub(super) struct Mesh {
     /// The vertices that faces use, in order of first use.
     pub positions: Vec<DVec3>,
+    /// Their colours, linear RGB in [0, 1]; empty where there are none.
+    pub colours: Vec<DVec3>,
+    /// Texture coordinates of the corners of each triangle that has some; empty where none has.
+    pub uvs: Vec<Option<[DVec2; 3]>>,
     /// The normals that triangles use, of unit length.
     pub normals: Vec<DVec3>,
     /// Fans of the faces, in file order; `material` indexes `materials`.
@@ -49,6 +54,10 @@ pub(super) fn read(source: &dyn Source, name: &str, warnings: &mut Vec<Warning>)
         let message = format!("statements that are not rendered are ignored: {}", list(&keywords));
         warnings.push(Warning::line(&file, line, message));
     }
+    if let Some(line) = faces.colours.unusable {
+        let message = "colours of vertices are ignored: from here on some are not from 0 to 1, or others have none";
+        warnings.push(Warning::line(&file, line, message));
+    }
     let (mesh, flattened) = assemble(&parsed.mesh, faces);
     if flattened > 0 {
         let message = format!("triangles with a normal of length zero, drawn flat: {flattened}");
@@ -73,10 +82,51 @@ fn assemble(parsed: &tobj::Mesh, faces: Faces) -> (Mesh, usize) {
             Triangle { vertices, normals: kept, material: run.material }
         })
         .collect();
-    let positions = parsed.positions.as_chunks().0.iter().map(|&p| DVec3::from_array(p)).collect();
-    let mesh =
-        Mesh { positions, triangles, normals: normals.kept, materials: faces.materials, libraries: faces.libraries };
+    let vectors = |components: &[f64]| components.as_chunks().0.iter().map(|&p| DVec3::from_array(p)).collect();
+    let colours = if faces.colours.are_usable() { vectors(&parsed.vertex_color) } else { Vec::new() };
+    let mesh = Mesh {
+        positions: vectors(&parsed.positions),
+        colours,
+        uvs: texture_coordinates(parsed, &faces),
+        triangles,
+        normals: normals.kept,
+        materials: faces.materials,
+        libraries: faces.libraries,
+    };
     (mesh, flattened)
+}
+
+/// The texture coordinates of each triangle; none at all where no triangle has any.
+fn texture_coordinates(parsed: &tobj::Mesh, faces: &Faces) -> Vec<Option<[DVec2; 3]>> {
+    if !faces.runs.iter().any(|run| run.textured) {
+        return Vec::new();
+    }
+    let coordinates = parsed.texcoords.as_chunks().0;
+    let corners = parsed.texcoord_indices.as_chunks().0;
+    let tags = faces.runs.iter().flat_map(|run| iter::repeat_n(run.textured, run.triangles));
+    let of = |corners: &[u32; 3]| corners.map(|corner| DVec2::from_array(coordinates[corner as usize]));
+    iter::zip(corners, tags).map(|(corners, textured)| textured.then(|| of(corners))).collect()
+}
+
+impl Mesh {
+    /// Leaves out the texture coordinates of triangles whose material has no texture, and warns of triangles that have a
+    /// texture and do not say where. `file` is the OBJ.
+    pub(super) fn keep_textured(&mut self, materials: &[Material], file: &str, warnings: &mut Vec<Warning>) {
+        let has_texture = |triangle: &Triangle| materials[triangle.material as usize].texture.is_some();
+        let textured = self.triangles.iter().filter(|triangle| has_texture(triangle)).count();
+        for (triangle, uv) in iter::zip(&self.triangles, &mut self.uvs) {
+            *uv = uv.filter(|_| has_texture(triangle));
+        }
+        let placed = self.uvs.iter().flatten().count();
+        if placed == 0 {
+            self.uvs = Vec::new();
+        }
+        if placed < textured {
+            let bare = textured - placed;
+            let message = format!("triangles without texture coordinates, drawn without their texture: {bare}");
+            warnings.push(Warning::file(file, message));
+        }
+    }
 }
 
 /// Unit normals, of which only those in use are kept.
@@ -163,10 +213,36 @@ mod tests {
     }
 
     #[test]
-    fn weights_and_colours_of_vertices_are_ignored() {
-        let (mesh, warnings) = mesh("v 0 0 0 2\nv 4 0 0 0.5 # c\nv 2 1 0 1 0 0\nv 3 0 1 1 1\nf 1 2 3\nf 1 2 4 # 9");
+    fn weights_of_vertices_are_ignored() {
+        let (mesh, warnings) = mesh("v 0 0 0 2\nv 4 0 0 0.5 # c\nv 2 1 0\nv 3 0 1 1 1\nf 1 2 3\nf 1 2 4 # 9");
         assert_eq!(corners(&mesh), [[0.0, 4.0, 2.0], [0.0, 4.0, 3.0]]);
+        assert!(warnings.is_empty() && mesh.colours.is_empty() && mesh.uvs.is_empty());
+    }
+
+    #[test]
+    fn colours_of_vertices_are_all_or_none() {
+        let (good, warnings) = mesh("v 9 9 9 0 0 0\nv 0 0 0 1 0 0\nv 1 0 0\nv 2 1 0 0 0 0.5 1\nf 2 3 4\n");
+        assert_eq!(good.colours, [DVec3::X, DVec3::ONE, DVec3::new(0.0, 0.0, 0.5)], "white where there is none");
         assert!(warnings.is_empty());
+        for (text, line) in [
+            ("v 0 0 0\nv 1 0 0\nv 2 1 0 1 0 0\nf 1 2 3\n", 3),
+            ("v 0 0 0 0 0 0\nv 1 0 0 255 0 0\nv 2 1 0 1 0 0\nf 1 2 3\n", 2),
+            ("v 0 0 0 0 -1 0\nv 1 0 0\nv 2 1 0\nf 1 2 3\n", 1),
+        ] {
+            let (bad, warnings) = mesh(text);
+            assert!(bad.colours.is_empty());
+            let expected = format!("built-in x.obj:{line}: colours of vertices are ignored: ");
+            assert!(warnings.len() == 1 && warnings[0].starts_with(&expected), "{warnings:?}");
+        }
+    }
+
+    #[test]
+    fn texture_coordinates_are_those_of_the_corners() {
+        let text =
+            FIVE.to_owned() + "vt 0.5\nvt 1 2\nvt -3 4 5\nf 1 2 3\nf 1/3 2/2 3/1\nf 1/1 2/1 3\nf 3/-1 4/-2 5/-3\n";
+        let (mesh, _) = mesh(&text);
+        let [a, b, c] = [[0.5, 0.0], [1.0, 2.0], [-3.0, 4.0]].map(DVec2::from_array);
+        assert_eq!(mesh.uvs, [None, Some([c, b, a]), None, Some([c, b, a])]);
     }
 
     #[test]

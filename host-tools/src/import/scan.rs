@@ -66,8 +66,26 @@ pub(super) struct Faces {
     known: HashMap<String, u32>,
     /// The arguments of `mtllib`.
     pub libraries: Vec<Named>,
+    /// The colours of vertices.
+    pub colours: Colours,
     /// Keywords that we do not render, and the line of the first of each.
     pub ignored: BTreeMap<String, u64>,
+}
+
+/// Whether vertices have colours: the first one decides for all, since `tobj` asks for a colour of each or of none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Colours {
+    /// Whether the first vertex has one; `None` before there was a vertex.
+    are_passed_on: Option<bool>,
+    /// The line of the first that is not from 0 to 1, or that comes after vertices without one.
+    pub unusable: Option<u64>,
+}
+
+impl Colours {
+    /// Whether what was passed on are the colours of all vertices.
+    pub(super) fn are_usable(self) -> bool {
+        self.are_passed_on == Some(true) && self.unusable.is_none()
+    }
 }
 
 /// A name and where it was given.
@@ -86,6 +104,8 @@ pub(super) struct Run {
     pub material: u32,
     /// Whether all their corners have a normal.
     pub smooth: bool,
+    /// Whether all their corners have texture coordinates.
+    pub textured: bool,
 }
 
 impl Faces {
@@ -97,14 +117,18 @@ impl Faces {
         let words: Vec<&str> = statement.words().collect();
         match statement.keyword() {
             "v" => {
-                // Beyond x, y and z come weights and colours, which `tobj` would make use of.
                 numbers(&words, 3, LARGEST)?;
                 self.counts[0] += 1;
-                pass("v", &words[..3], out);
+                // Beyond x, y and z comes a weight, of which `tobj` would make use, or a colour.
+                match self.colour(&words, statement.line) {
+                    Some(colour) => pass("v", &[&words[..3], &colour].concat(), out),
+                    None => pass("v", &words[..3], out),
+                }
             }
             "vt" => {
                 numbers(&words, 1, f64::MAX)?;
                 self.counts[1] += 1;
+                pass("vt", &[words[0], words.get(1).unwrap_or(&"0")], out);
             }
             "vn" => {
                 numbers(&words, 3, f64::MAX)?;
@@ -134,13 +158,27 @@ impl Faces {
         Ok(())
     }
 
+    /// The colour of a vertex for `tobj`, where all of the file have one.
+    fn colour<'w>(&mut self, words: &[&'w str], line: u64) -> Option<[&'w str; 3]> {
+        let given = words.get(3..6).map(|colour| [colour[0], colour[1], colour[2]]);
+        let is_share = |word: &str| number(word).is_ok_and(|share| (0.0..=1.0).contains(&share));
+        let colour = given.filter(|words| words.iter().all(|word| is_share(word)));
+        let are_passed_on = *self.colours.are_passed_on.get_or_insert(colour.is_some());
+        if given.is_some() && (colour.is_none() || !are_passed_on) {
+            self.colours.unusable.get_or_insert(line);
+        }
+        are_passed_on.then(|| colour.unwrap_or(["1"; 3]))
+    }
+
     fn face(&mut self, corners: &[&str], line: u64) -> Result<(), String> {
         if corners.len() < 3 {
             return Err(format!("a face of {} corners; it needs at least 3", corners.len()));
         }
-        let mut smooth = true;
+        let (mut smooth, mut textured) = (true, true);
         for corner in corners {
-            smooth &= self.corner(corner, line)?;
+            let [_, has_texture, has_normal] = self.corner(corner, line)?;
+            smooth &= has_normal;
+            textured &= has_texture;
         }
         let triangles = corners.len() - 2;
         self.triangles += triangles;
@@ -150,17 +188,17 @@ impl Faces {
         }
         let material = self.material();
         match self.runs.last_mut() {
-            Some(run) if run.material == material && run.smooth == smooth => {
+            Some(run) if run.material == material && run.smooth == smooth && run.textured == textured => {
                 run.triangles += triangles;
             }
-            _ => self.runs.push(Run { triangles, material, smooth }),
+            _ => self.runs.push(Run { triangles, material, smooth, textured }),
         }
         Ok(())
     }
 
-    /// Checks `v`, `v/vt`, `v//vn` or `v/vt/vn`; whether it has a normal.
-    fn corner(&mut self, corner: &str, line: u64) -> Result<bool, String> {
-        let mut smooth = false;
+    /// Checks `v`, `v/vt`, `v//vn` or `v/vt/vn`; which of them it has.
+    fn corner(&mut self, corner: &str, line: u64) -> Result<[bool; 3], String> {
+        let mut given = [false; 3];
         for (list, word) in corner.split('/').enumerate() {
             let Some(name) = LISTS.get(list) else {
                 return Err(format!("`{}` is not v, v/vt, v//vn or v/vt/vn", excerpt(corner)));
@@ -190,9 +228,9 @@ impl Faces {
                 }
                 _ => {}
             }
-            smooth |= list == 2;
+            given[list] = true;
         }
-        Ok(smooth)
+        Ok(given)
     }
 
     /// The index of the material in force.

@@ -8,7 +8,7 @@ use std::fmt;
 
 use glam::DVec3;
 use serde::Deserialize;
-use serde::de::{Deserializer, Error, IgnoredAny, SeqAccess, Visitor};
+use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 use toml::Spanned;
 
 /// A whole file.
@@ -22,7 +22,7 @@ pub(super) struct SceneToml {
     #[serde(default)]
     pub light: Vec<Spanned<LightToml>>,
     #[serde(default)]
-    pub sphere: Vec<Spanned<IgnoredAny>>,
+    pub sphere: Vec<Spanned<SphereToml>>,
     #[serde(default)]
     pub material: BTreeMap<Spanned<String>, MaterialToml>,
     #[serde(default)]
@@ -44,7 +44,7 @@ pub(super) enum TransferToml {
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table such as [camera]")]
 pub(super) struct CameraToml {
-    pub projection: Option<Spanned<ProjectionToml>>,
+    pub projection: Option<ProjectionToml>,
     pub height: Option<Spanned<Number>>,
     pub position: Option<Spanned<Vector>>,
     pub look_at: Option<Spanned<Vector>>,
@@ -91,26 +91,33 @@ pub(super) enum FalloffToml {
     InverseSquare,
 }
 
-/// `[material.NAME]`.
+/// `[[sphere]]`.
 #[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table such as [[sphere]]")]
+pub(super) struct SphereToml {
+    pub centre: Spanned<Vector>,
+    pub radius: Spanned<Number>,
+    pub material: Option<Spanned<String>>,
+}
+
+/// `[material.NAME]`.
+#[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table such as [material.glass]")]
 pub(super) struct MaterialToml {
-    #[serde(default)]
-    pub kind: MaterialKindToml,
-    pub ior: Option<Number>,
+    pub kind: Option<MaterialKindToml>,
+    pub ior: Option<Spanned<Number>>,
     pub colour: Option<Spanned<Vector>>,
     pub specular: Option<SpecularToml>,
-    pub exponent: Option<Number>,
-    pub weights: Option<[Number; 4]>,
+    pub exponent: Option<Spanned<Number>>,
+    pub weights: Option<Spanned<[Number; 4]>>,
     pub checker: Option<Spanned<CheckerToml>>,
     pub tinted_shadow: Option<bool>,
 }
 
 /// `material.NAME.kind`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum MaterialKindToml {
-    #[default]
     Lambert,
     Metal,
     Dielectric,
@@ -149,6 +156,17 @@ pub(super) struct RenderToml {
     pub samples: Option<Spanned<Number>>,
     pub max_depth: Option<Spanned<Number>>,
     pub ambient: Option<Spanned<Vector>>,
+    #[serde(default)]
+    pub filter: FilterToml,
+}
+
+/// `render.filter`.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum FilterToml {
+    #[default]
+    Bilinear,
+    Nearest,
 }
 
 /// A finite number, whole or not.

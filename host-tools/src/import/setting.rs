@@ -3,36 +3,29 @@
 use glam::DVec3;
 use toml::Spanned;
 
-use super::LARGEST;
 use super::document::Document;
-use super::error::{ImportError, Warning};
-use super::schema::{FalloffToml, LightKindToml, LightToml, Number, TransferToml};
-use crate::model::{Camera, Light, LightKind, RenderSettings, Transfer};
+use super::error::ImportError;
+use super::schema::{FalloffToml, FilterToml, LightKindToml, LightToml, Number, TransferToml};
+use super::{LARGEST, SMALLEST};
+use crate::model::{Background, Camera, Falloff, Filter, Light, LightKind, RenderSettings, Transfer};
 use crate::picture::{SIZES, size_is_allowed};
 
-/// Picture size where none is given, pixels.
-const SIZE: [u32; 2] = [640, 480];
+/// Camera rays a pixel at most.
+const MOST_SAMPLES: u32 = 1024;
+/// Reflections and refractions of a ray at most.
+const GREATEST_DEPTH: u32 = 64;
 
 impl Document {
     /// The lights; where there are none, a white one at the camera.
     pub(super) fn lights(&self, camera: &Camera) -> Result<Vec<Light>, ImportError> {
         if self.scene.light.is_empty() {
-            return Ok(vec![Light { kind: LightKind::Point(camera.position), radiance: DVec3::ONE }]);
+            return Ok(vec![Light::new(LightKind::Point(camera.position), DVec3::ONE)]);
         }
         self.scene.light.iter().map(|light| self.light(light)).collect()
     }
 
     fn light(&self, table: &Spanned<LightToml>) -> Result<Light, ImportError> {
         let light = table.get_ref();
-        if let Some(falloff) = &light.falloff
-            && let FalloffToml::InverseSquare = falloff.get_ref()
-        {
-            let message = "inverse-square falloff is not supported yet; use \"none\"";
-            return Err(self.error(falloff.span(), message));
-        }
-        if let Some(reach) = &light.reach {
-            return Err(self.error(reach.span(), "reach goes with an inverse-square falloff"));
-        }
         let kind = match (light.kind, &light.position, &light.direction) {
             (LightKindToml::Point, Some(position), None) => LightKind::Point(self.point(position)?),
             (LightKindToml::Directional, None, Some(direction)) => {
@@ -56,41 +49,74 @@ impl Document {
             Some(intensity) => intensity.get_ref().0,
             None => 1.0,
         };
-        Ok(Light { kind, radiance: intensity * colour })
+        Ok(Light { kind, radiance: intensity * colour, falloff: self.falloff(light, kind)? })
+    }
+
+    fn falloff(&self, light: &LightToml, kind: LightKind) -> Result<Falloff, ImportError> {
+        let falloff = light.falloff.as_ref();
+        let Some(fades) = falloff.filter(|falloff| matches!(falloff.get_ref(), FalloffToml::InverseSquare)) else {
+            return match &light.reach {
+                Some(reach) => Err(self.error(reach.span(), "reach goes with an inverse-square falloff")),
+                None => Ok(Falloff::None),
+            };
+        };
+        if let LightKind::Directional(_) = kind {
+            return Err(self.error(fades.span(), "a directional light comes from no place, and has no falloff"));
+        }
+        let Some(reach) = &light.reach else {
+            let message = "an inverse-square falloff has a reach: at what distance the light is as bright as it says";
+            return Err(self.error(fades.span(), message));
+        };
+        let Number(value) = *reach.get_ref();
+        if !(SMALLEST..=LARGEST).contains(&value) {
+            let message = format!("reach of {value}; it must be above 0 and at most {LARGEST:e}");
+            return Err(self.error(reach.span(), message));
+        }
+        Ok(Falloff::InverseSquare { reach: value })
     }
 
     /// What a ray that hits nothing sees.
-    pub(super) fn background(&self) -> Result<DVec3, ImportError> {
-        if let Some(sky) = &self.scene.background.sky {
-            return Err(self.error(sky.span(), "sky is not supported yet; give a colour"));
-        }
+    pub(super) fn background(&self) -> Result<Background, ImportError> {
         let colour = self.scene.background.colour.as_ref();
-        self.colour("background", LARGEST, colour, DVec3::ZERO)
+        let Some(sky) = &self.scene.background.sky else {
+            return Ok(self.colour("background", LARGEST, colour, DVec3::ZERO)?.into());
+        };
+        if let Some(colour) = colour {
+            return Err(self.error(colour.span(), "a background is a colour or a sky, not both"));
+        }
+        let [bottom, top] = sky.get_ref().map(|vector| Spanned::new(sky.span(), vector));
+        Ok(Background::Sky {
+            bottom: self.colour("sky", LARGEST, Some(&bottom), DVec3::ZERO)?,
+            top: self.colour("sky", LARGEST, Some(&top), DVec3::ZERO)?,
+        })
     }
 
     /// Picture settings.
-    pub(super) fn render(&self, warnings: &mut Vec<Warning>) -> Result<RenderSettings, ImportError> {
+    pub(super) fn render(&self) -> Result<RenderSettings, ImportError> {
         let render = &self.scene.render;
         let size = match &render.size {
             Some(size) => self.size(size)?,
-            None => SIZE,
+            None => RenderSettings::default().size,
         };
-        if let Some(samples) = &render.samples
-            && self.count("samples", 1.0, samples)? > 1.0
-        {
-            let line = self.line(samples.span());
-            let message = "samples: more than one a pixel is not supported yet; drawn with one";
-            warnings.push(Warning::line(&self.file, line, message));
-        }
-        if let Some(max_depth) = &render.max_depth {
-            self.count("max_depth", 0.0, max_depth)?;
-        }
+        let default = RenderSettings::default();
+        let samples = match &render.samples {
+            Some(samples) => self.count("samples", 1..=MOST_SAMPLES, samples)?,
+            None => default.samples,
+        };
+        let max_depth = match &render.max_depth {
+            Some(max_depth) => self.count("max_depth", 0..=GREATEST_DEPTH, max_depth)?,
+            None => default.max_depth,
+        };
         let transfer = match self.scene.transfer {
             TransferToml::Srgb => Transfer::Srgb,
             TransferToml::Linear => Transfer::Linear,
         };
         let ambient = self.colour("ambient", LARGEST, render.ambient.as_ref(), DVec3::ZERO)?;
-        Ok(RenderSettings { size, ambient, transfer })
+        let filter = match render.filter {
+            FilterToml::Bilinear => Filter::Bilinear,
+            FilterToml::Nearest => Filter::Nearest,
+        };
+        Ok(RenderSettings { size, samples, max_depth, ambient, transfer, filter })
     }
 
     fn size(&self, size: &Spanned<Vec<Number>>) -> Result<[u32; 2], ImportError> {
@@ -109,6 +135,7 @@ impl Document {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use crate::import::testing::{refused, room, warnings};
 
     #[test]
@@ -126,7 +153,15 @@ mod tests {
             ),
             (
                 "[[light]]\nposition = [0, 0, 0]\nfalloff = 'inverse-square'",
-                "4: inverse-square falloff is not supported yet; use \"none\"",
+                "4: an inverse-square falloff has a reach: at what distance the light is as bright as it says",
+            ),
+            (
+                "[[light]]\nposition = [0, 0, 0]\nfalloff = 'inverse-square'\nreach = 0",
+                "5: reach of 0; it must be above 0 and at most 1e30",
+            ),
+            (
+                "[[light]]\nkind = 'directional'\ndirection = [0, -1, 0]\nfalloff = 'inverse-square'\nreach = 1",
+                "5: a directional light comes from no place, and has no falloff",
             ),
             ("[[light]]\nposition = [0, 0, 0]\nreach = 3", "4: reach goes with an inverse-square falloff"),
             ("[[light]]\nposition = [0, 0, 0]\nintensity = -1", "4: intensity of -1; it must be from 0 to 1e30"),
@@ -148,10 +183,20 @@ mod tests {
             ("[render]\nsize = [16385, 1]", size),
             ("[render]\nsize = [640]", size),
             ("[render]\nsize = [8192, 8193]", size),
-            ("[render]\nsamples = 0", "3: samples of 0; it must be a whole number from 1"),
-            ("[render]\nmax_depth = -1", "3: max_depth of -1; it must be a whole number from 0"),
+            ("[render]\nsamples = 0", "3: samples of 0; it must be a whole number from 1 to 1024"),
+            ("[render]\nmax_depth = -1", "3: max_depth of -1; it must be a whole number from 0 to 64"),
             ("[render]\nambient = [-1, 0, 0]", "3: ambient [-1, 0, 0] is out of range; each channel is from 0 to 1e30"),
-            ("[background]\nsky = [[0, 0, 0], [1, 1, 1]]", "3: sky is not supported yet; give a colour"),
+            ("[render]\nmax_depth = 65", "3: max_depth of 65; it must be a whole number from 0 to 64"),
+            ("[render]\nsamples = 1.5", "3: samples of 1.5; it must be a whole number from 1 to 1024"),
+            ("[render]\nfilter = 'cubic'", "3: unknown value `cubic`; the nearest known one is `bilinear`"),
+            (
+                "[background]\nsky = [[0, 0, 0], [1, -1, 1]]",
+                "3: sky [1, -1, 1] is out of range; each channel is from 0 to 1e30",
+            ),
+            (
+                "[background]\nsky = [[0, 0, 0], [1, 1, 1]]\ncolour = [0, 0, 0]",
+                "4: a background is a colour or a sky, not both",
+            ),
             (
                 "[background]\ncolour = [0, -1, 0]",
                 "3: background [0, -1, 0] is out of range; each channel is from 0 to 1e30",
@@ -164,10 +209,15 @@ mod tests {
     }
 
     #[test]
-    fn samples_are_accepted_with_a_warning() {
-        let imported = room("[render]\nsamples = 4\nmax_depth = 0\n[material.wall]").unwrap();
-        let expected = "built-in s.toml:3: samples: more than one a pixel is not supported yet; \
-                        drawn with one";
-        assert_eq!(warnings(&imported), [expected]);
+    fn settings_reach_the_model() {
+        let lines = "[render]\nsamples = 4\nmax_depth = 0\nfilter = 'nearest'\n[background]\nsky = [[1, 2, 3], [4, 5, 6]]\n\
+                     [[light]]\nposition = [0, 0, 0]\nfalloff = 'inverse-square'\nreach = 3\n[material.wall]";
+        let imported = room(lines).unwrap();
+        assert_eq!(warnings(&imported), Vec::<String>::new());
+        let model = imported.model;
+        assert_eq!((model.render.samples, model.render.max_depth, model.render.filter), (4, 0, Filter::Nearest));
+        assert_eq!(model.lights[0].falloff, Falloff::InverseSquare { reach: 3.0 });
+        let [bottom, top] = [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]].map(DVec3::from_array);
+        assert_eq!(model.background, Background::Sky { bottom, top });
     }
 }

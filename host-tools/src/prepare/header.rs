@@ -14,15 +14,15 @@ use crate::model::{self, LightKind, Model};
 /// quarter of a unit.
 const FRACTION_BITS: u8 = 16;
 
-/// The camera's coefficients for the model's picture size.
-pub(super) fn camera<K: Kernel>(model: &Model, grid: &Grid) -> CameraHeader {
+/// The camera's coefficients for the model's picture size and a vertical field of view in radians.
+pub(super) fn camera<K: Kernel>(model: &Model, fov_y: f64, grid: &Grid) -> CameraHeader {
     let camera = &model.camera;
     let forward = (camera.look_at - camera.position).normalize();
     let right = forward.cross(camera.up).normalize();
     let up = right.cross(forward);
     let [width, height] = model.render.size.map(f64::from);
     // The half extents of the picture at distance 1, and a pixel's share of them.
-    let half_height = libm::tan(camera.fov_y / 2.0);
+    let half_height = libm::tan(fov_y / 2.0);
     let pixel = 2.0 * half_height / height;
     let first = forward + right * (pixel * (1.0 - width) / 2.0) - up * (pixel * (1.0 - height) / 2.0);
     // In a picture of one column (or row) no step is taken, and a wide view's would not fit.
@@ -64,7 +64,7 @@ pub(super) fn radiance(linear: DVec3) -> Radiance {
 
 /// A material as the blob has it.
 pub(super) fn material(material: &model::Material) -> Material {
-    let albedo = material.diffuse.to_array().map(|c| (c.clamp(0.0, 1.0) * 65_535.0 + 0.5).floor() as u16);
+    let albedo = material.colour.to_array().map(|c| (c.clamp(0.0, 1.0) * 65_535.0 + 0.5).floor() as u16);
     Material { emission: radiance(material.emission), albedo, reserved: 0 }
 }
 

@@ -9,6 +9,7 @@ use core_rt::section::ALIGN;
 use core_rt::space::Space;
 use zerocopy::IntoBytes;
 
+use super::unsupported::Plain;
 use super::{PrepareError, header};
 use crate::grid::Grid;
 use crate::model::Model;
@@ -38,6 +39,7 @@ impl Blob {
 
 /// What the tree's builder and the kernel made, in the order of the blob.
 pub(super) struct Parts<'a, N, T> {
+    pub(super) plain: Plain,
     pub(super) root: u32,
     pub(super) depth: u8,
     pub(super) arithmetic: Arithmetic,
@@ -104,8 +106,8 @@ pub(super) fn write<K: Kernel>(
         needs,
         // Pictures are at most 2^14 a side: the importer's bound.
         size: model.render.size.map(|s| s.min(u16::MAX.into()) as u16),
-        camera: header::camera::<K>(model, grid),
-        background: header::radiance(model.background),
+        camera: header::camera::<K>(model, parts.plain.fov_y, grid),
+        background: header::radiance(parts.plain.background),
         ambient: header::radiance(model.render.ambient),
         transfer: header::transfer(model.render.transfer),
         root: parts.root,

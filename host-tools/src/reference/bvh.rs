@@ -9,42 +9,42 @@ use glam::DVec3;
 
 use super::bounds::{Bounds, SLACK};
 use super::ray::Ray;
-use super::triangle::Triangle;
+use super::shape::Shape;
 
-/// Triangles below which a node is not split.
+/// Shapes below which a node is not split.
 const LEAF: usize = 4;
 
 /// Bins an axis.
 const BINS: usize = 16;
 
-/// Levels split by the heuristic. Below, the median halves the at most 2^32 triangles, so that no
+/// Levels split by the heuristic. Below, the median halves the at most 2^32 shapes, so that no
 /// scene, however uneven, is deeper than [`DEPTH`].
 const HEURISTIC_DEPTH: usize = 32;
 
 /// Levels at most, the root's not counted; one entry of the traversal's stack a level suffices.
 const DEPTH: usize = HEURISTIC_DEPTH + 32;
 
-/// The tree, with the triangles in the order of its leaves.
+/// The tree, with the shapes in the order of its leaves.
 #[derive(Clone, Debug)]
 pub(super) struct Bvh {
-    /// The root first, siblings side by side; empty if there are no triangles.
+    /// The root first, siblings side by side; empty if there are no shapes.
     nodes: Vec<Node>,
-    triangles: Vec<Triangle>,
+    shapes: Vec<Shape>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Node {
     bounds: Bounds,
-    /// First triangle of a leaf, left child of an inner node.
+    /// First shape of a leaf, left child of an inner node.
     first: u32,
-    /// Triangles of a leaf, 0 in an inner node.
+    /// Shapes of a leaf, 0 in an inner node.
     count: u32,
 }
 
-/// A triangle while the tree is built.
+/// A shape while the tree is built.
 #[derive(Clone, Copy)]
 struct Item {
-    triangle: Triangle,
+    shape: Shape,
     bounds: Bounds,
 }
 
@@ -56,16 +56,15 @@ impl Item {
 }
 
 impl Bvh {
-    /// The tree over `triangles`, at most 2^32 - 1 of them, duplicates welcome.
-    pub(super) fn build(triangles: impl IntoIterator<Item = Triangle>) -> Self {
-        let mut items: Vec<Item> =
-            triangles.into_iter().map(|triangle| Item { triangle, bounds: Bounds::around(triangle.corners) }).collect();
+    /// The tree over `shapes`, at most 2^32 - 1 of them, duplicates welcome.
+    pub(super) fn build(shapes: impl IntoIterator<Item = Shape>) -> Self {
+        let mut items: Vec<Item> = shapes.into_iter().map(|shape| Item { shape, bounds: shape.bounds() }).collect();
         let mut nodes = Vec::new();
         if !items.is_empty() {
             nodes.push(leaf(&items, 0..items.len()));
             subdivide(&mut nodes, 0, &mut items, 0);
         }
-        Self { nodes, triangles: items.iter().map(|item| item.triangle).collect() }
+        Self { nodes, shapes: items.iter().map(|item| item.shape).collect() }
     }
 
     /// The box around everything.
@@ -75,13 +74,8 @@ impl Bvh {
 
     /// Visits the leaves whose boxes `ray` enters no deeper than `limit`, roughly front to back.
     ///
-    /// `visit` gets a leaf's triangles and returns the limit from there on, or breaks off.
-    pub(super) fn traverse(
-        &self,
-        ray: &Ray,
-        mut limit: f64,
-        mut visit: impl FnMut(&[Triangle]) -> ControlFlow<(), f64>,
-    ) {
+    /// `visit` gets a leaf's shapes and returns the limit from there on, or breaks off.
+    pub(super) fn traverse(&self, ray: &Ray, mut limit: f64, mut visit: impl FnMut(&[Shape]) -> ControlFlow<(), f64>) {
         let entry = |index: u32, limit| self.nodes[index as usize].bounds.entry(ray, limit);
         if self.nodes.is_empty() || entry(0, limit).is_none() {
             return;
@@ -93,7 +87,7 @@ impl Bvh {
             let node = &self.nodes[current as usize];
             if node.count > 0 {
                 let first = node.first as usize;
-                match visit(&self.triangles[first..first + node.count as usize]) {
+                match visit(&self.shapes[first..first + node.count as usize]) {
                     ControlFlow::Continue(new) => limit = new,
                     ControlFlow::Break(()) => return,
                 }
@@ -210,17 +204,18 @@ fn median(items: &mut [Item]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::reference::triangle::Triangle;
 
     /// Faults of a tree: bounds that do not hold their content, triangles lost, too great a depth.
-    fn faults(bvh: &Bvh, triangles: &[Triangle]) -> usize {
+    fn faults(bvh: &Bvh, shapes: &[Shape]) -> usize {
         fn walk(bvh: &Bvh, index: usize, depth: usize, seen: &mut Vec<u32>) -> usize {
             let node = &bvh.nodes[index];
             let holds = |b: Bounds| node.bounds.union(b) == node.bounds;
             let mut faults = usize::from(depth > DEPTH);
             if node.count > 0 {
-                for triangle in &bvh.triangles[node.first as usize..][..node.count as usize] {
-                    faults += usize::from(!holds(Bounds::around(triangle.corners)));
-                    seen.push(triangle.prim);
+                for shape in &bvh.shapes[node.first as usize..][..node.count as usize] {
+                    faults += usize::from(!holds(shape.bounds()));
+                    seen.push(shape.prim());
                 }
             } else {
                 for child in [node.first as usize, node.first as usize + 1] {
@@ -233,14 +228,15 @@ mod tests {
         let mut seen = Vec::new();
         let faults = walk(bvh, 0, 0, &mut seen);
         seen.sort_unstable();
-        faults + usize::from(!seen.iter().copied().eq(0..triangles.len() as u32))
+        faults + usize::from(!seen.iter().copied().eq(0..shapes.len() as u32))
     }
 
-    fn row(count: u32, place: impl Fn(u32) -> f64) -> Vec<Triangle> {
+    fn row(count: u32, place: impl Fn(u32) -> f64) -> Vec<Shape> {
         (0..count)
             .map(|prim| {
                 let x = place(prim);
-                Triangle { corners: [[x, 0.0, 0.0], [x, 1.0, 0.0], [x, 0.0, 1.0]].map(DVec3::from), prim }
+                let corners = [[x, 0.0, 0.0], [x, 1.0, 0.0], [x, 0.0, 1.0]].map(DVec3::from);
+                Shape::Triangle(Triangle { corners, prim })
             })
             .collect()
     }
@@ -254,11 +250,11 @@ mod tests {
             // Each step dwarfs all before it, which makes the heuristic cut off one at a time.
             row(1000, |i| libm::ldexp(1.0, i as i32 - 900)),
         ];
-        for triangles in rows {
-            let mut bvh = Bvh::build(triangles.clone());
-            assert_eq!(faults(&bvh, &triangles), 0);
-            bvh.triangles[0].corners[0].x = -1e300;
-            assert_ne!(faults(&bvh, &triangles), 0, "the check must see a damaged tree");
+        for shapes in rows {
+            let mut bvh = Bvh::build(shapes.clone());
+            assert_eq!(faults(&bvh, &shapes), 0);
+            bvh.shapes[0] = row(1, |_| -1e300)[0];
+            assert_ne!(faults(&bvh, &shapes), 0, "the check must see a damaged tree");
         }
     }
 

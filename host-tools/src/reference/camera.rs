@@ -1,17 +1,19 @@
-//! The pinhole camera.
+//! The pinhole camera, and the camera of parallel rays.
 
 use glam::DVec3;
 
-use crate::model::Camera;
+use crate::model::{Camera, Projection};
 
-/// A camera's frame: where it looks and how far its picture reaches at unit distance.
+/// A camera's frame: where it looks and how far its picture reaches.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct View {
     position: DVec3,
     forward: DVec3,
     right: DVec3,
     up: DVec3,
+    /// Half the picture's height: at distance 1, or of parallel rays, in scene units.
     half_height: f64,
+    is_parallel: bool,
 }
 
 impl View {
@@ -19,13 +21,11 @@ impl View {
     pub(super) fn new(camera: &Camera) -> Self {
         let forward = (camera.look_at - camera.position).normalize();
         let right = forward.cross(camera.up).normalize();
-        Self {
-            position: camera.position,
-            forward,
-            right,
-            up: right.cross(forward),
-            half_height: libm::tan(camera.fov_y / 2.0),
-        }
+        let (half_height, is_parallel) = match camera.projection {
+            Projection::Perspective { fov_y } => (libm::tan(fov_y / 2.0), false),
+            Projection::Orthographic { height } => (height / 2.0, true),
+        };
+        Self { position: camera.position, forward, right, up: right.cross(forward), half_height, is_parallel }
     }
 
     /// Origin and direction, of any length, of the ray through `(x, y)` in pixels, y down.
@@ -34,7 +34,8 @@ impl View {
         let pixel = 2.0 * self.half_height / height;
         let right = (x - width / 2.0) * pixel;
         let up = (height / 2.0 - y) * pixel;
-        (self.position, self.forward + self.right * right + self.up * up)
+        let across = self.right * right + self.up * up;
+        if self.is_parallel { (self.position + across, self.forward) } else { (self.position, self.forward + across) }
     }
 }
 
@@ -48,7 +49,7 @@ mod tests {
             position: DVec3::new(1.0, 2.0, 3.0),
             look_at: DVec3::new(1.0, 2.0, -7.0),
             up: DVec3::new(0.0, 5.0, 1.0),
-            fov_y: core::f64::consts::FRAC_PI_2,
+            projection: Projection::Perspective { fov_y: core::f64::consts::FRAC_PI_2 },
         });
         let close = |(origin, direction): (DVec3, DVec3), expected: [f64; 3]| {
             assert_eq!(origin, DVec3::new(1.0, 2.0, 3.0));
@@ -58,5 +59,20 @@ mod tests {
         close(view.ray([200, 100], 0.0, 0.0), [-2.0, 1.0, -1.0]);
         close(view.ray([200, 100], 200.0, 100.0), [2.0, -1.0, -1.0]);
         close(view.ray([3, 1], 1.5, 0.0), [0.0, 1.0, -1.0]);
+    }
+
+    #[test]
+    fn parallel_rays_start_across_the_plane_of_the_camera() {
+        let view = View::new(&Camera {
+            position: DVec3::new(1.0, 2.0, 3.0),
+            look_at: DVec3::new(1.0, 2.0, -7.0),
+            up: DVec3::Y,
+            projection: Projection::Orthographic { height: 8.0 },
+        });
+        let expected =
+            [([0.0, 0.0], [-7.0, 6.0, 3.0]), ([100.0, 50.0], [1.0, 2.0, 3.0]), ([200.0, 75.0], [9.0, 0.0, 3.0])];
+        for ([x, y], origin) in expected {
+            assert_eq!(view.ray([200, 100], x, y), (DVec3::from(origin), -DVec3::Z));
+        }
     }
 }

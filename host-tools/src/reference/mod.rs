@@ -7,24 +7,32 @@
 //!
 //! # Shading policy
 //!
-//! What the integer core follows too, each in its own arithmetic:
+//! What the integer core follows too, each in its own arithmetic. In short; `docs/SHADING.md` has the formulas, the
+//! defaults and the sources:
 //!
 //! - The nearest hit is the least t > 0; of equal ones, the lowest triangle. Triangles have two sides,
-//!   and their edges belong to them. A ray that hits nothing sees the background.
+//!   and their edges belong to them. Spheres come after the triangles. A ray that hits nothing sees the background.
 //! - The hit's point is (1-u-v) v0 + u v1 + v v2. The geometric normal ng is e1 x e2 normalised and
 //!   flipped to face the viewer. The shading normal ns is the corners' normals, interpolated likewise
 //!   and normalised, or ng if there are none or they cancel; it is flipped if ns . ng < 0.
 //! - A light at the direction l contributes where ng . l > 0 and ns . l > 0 and nothing lies in the
-//!   open segment to it, or, if it is directional, along the open half-line.
-//! - colour = emission + diffuse * (ambient + sum over those lights of radiance * ns . l): no 1/pi, no
-//!   falloff. Emission shows on both sides. [`encode`] clamps to [0, 1], applies the transfer and
-//!   rounds to nearest.
+//!   open segment to it, or, if it is directional, along the open half-line; surfaces that tint their shadow let their
+//!   tint through.
+//! - colour = emission + kd albedo (ambient + sum of E ns . l) + ks specular colour (sum of E lobe) +
+//!   kr tint trace(reflected) + kt tint trace(refracted), with E the light's radiance by its falloff: no 1/pi.
+//!   Emission shows on both sides. [`encode`] clamps to [0, 1], applies the transfer and rounds to nearest.
+//! - After the scene's number of bounces a ray sees the background.
 //!
-//! # Where a shadow ray starts and ends
+//! Of a tree of rays, a branch whose share of the pixel is below 2^-20 in every channel is left out: a 4096th of a byte's
+//! step, so that what others leave out is measured.
+//!
+//! # Where a secondary ray starts and ends
 //!
 //! A triangle whose plane contains an end of a segment cannot block its inside, unless the segment
 //! lies in that plane. So a shadow ray starts at the point itself and ends at the light, and the
-//! triangles whose planes contain the point or the light, as the hit triangle's does, are passed over.
+//! triangles whose planes contain the point or the light, as the hit triangle's does, are passed over;
+//! reflected and refracted rays pass over those that contain the point. A sphere that contains it is met again at the
+//! other end of the chord, if the ray goes inside.
 //! That is the open segment of the policy. An origin moved off the surface, which fixed-point
 //! arithmetic needs, would be its approximation: in a concave corner it crosses the other wall.
 //!
@@ -37,10 +45,17 @@ mod bounds;
 mod bvh;
 mod camera;
 mod encode;
+mod optics;
+mod pattern;
 mod ray;
 mod shade;
+mod shape;
+mod sphere;
+mod surface;
 #[cfg(test)]
 mod tests;
+mod texture;
+mod trace;
 mod triangle;
 
 use std::ops::ControlFlow;
@@ -52,20 +67,22 @@ use crate::model::Model;
 use bvh::Bvh;
 use camera::View;
 use ray::Ray;
-use triangle::{Crossing, Triangle};
+use shape::Shape;
+use trace::Bounce;
+use triangle::Crossing;
 
 pub use encode::encode;
 
-/// Where a ray meets a triangle.
+/// Where a ray meets a triangle or a sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// Positive, with point = origin + t direction for the direction as it was given.
     pub t: f64,
-    /// The triangle, in file order.
+    /// The triangle, in file order; spheres come after all triangles.
     pub prim: u32,
-    /// Weight of v1: point = (1-u-v) v0 + u v1 + v v2.
+    /// Weight of v1: point = (1-u-v) v0 + u v1 + v v2; 0 on a sphere.
     pub u: f64,
-    /// Weight of v2.
+    /// Weight of v2; 0 on a sphere.
     pub v: f64,
 }
 
@@ -82,7 +99,7 @@ pub struct Sample {
     pub colour: DVec3,
     /// The surface; `None` for the background.
     pub hit: Option<Hit>,
-    /// Bit i is set where light i contributes; lights from the 65th on are not recorded.
+    /// Bit i is set where light i contributes to the surface itself; lights from the 65th on are not recorded.
     pub lights: u64,
     /// Unit shading normal ns; zero for the background.
     pub normal: DVec3,
@@ -96,7 +113,7 @@ pub struct Reference<'m> {
     model: &'m Model,
     bvh: Bvh,
     view: View,
-    /// Distance, in scene units, up to which a plane contains a point.
+    /// Distance, in scene units, up to which a surface contains a point.
     contact: f64,
 }
 
@@ -104,8 +121,7 @@ impl<'m> Reference<'m> {
     /// Prepares `model`, whose indices must be in range as [`Model`] says. Triangles without area are
     /// left out; duplicates are kept.
     pub fn new(model: &'m Model) -> Self {
-        let triangles = (0..model.triangles.len() as u32).map(|prim| lookup(model, prim));
-        let bvh = Bvh::build(triangles.filter(Triangle::has_area));
+        let bvh = Bvh::build(Shape::all(model));
         let bounds = bvh.bounds();
         let largest = bounds.low.abs().max(bounds.high.abs()).max_element();
         Self { model, bvh, view: View::new(&model.camera), contact: libm::ldexp(largest, -40) }
@@ -114,25 +130,25 @@ impl<'m> Reference<'m> {
     /// The nearest hit along `direction`, which may have any length but zero; `None` if there is none.
     pub fn nearest(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
         let ray = Ray::new(origin, direction);
-        let (crossing, prim) = self.closest(&ray)?;
+        let (crossing, prim) = self.closest(&ray, Shape::intersect)?;
         Some(Hit::new(&ray, crossing, prim))
     }
 
     /// All hits no farther than (1 + `tolerance`) times the nearest, in order of (t, prim), so the
-    /// nearest first; empty for a miss.
+    /// nearest first; empty for a miss. Of a sphere, the nearer one.
     ///
     /// More than one is what tells a tie between coplanar surfaces from an error.
     pub fn candidates(&self, origin: DVec3, direction: DVec3, tolerance: f64) -> Vec<Hit> {
         let ray = Ray::new(origin, direction);
-        let Some((nearest, _)) = self.closest(&ray) else {
+        let Some((nearest, _)) = self.closest(&ray, Shape::intersect) else {
             return Vec::new();
         };
         let limit = nearest.depth * (1.0 + tolerance);
         let mut found = Vec::new();
-        self.bvh.traverse(&ray, limit, |triangles| {
-            found.extend(triangles.iter().filter_map(|triangle| {
-                let crossing = triangle.intersect(&ray)?;
-                (crossing.depth <= limit).then_some((crossing, triangle.prim))
+        self.bvh.traverse(&ray, limit, |shapes| {
+            found.extend(shapes.iter().filter_map(|shape| {
+                let crossing = shape.intersect(&ray)?;
+                (crossing.depth <= limit).then_some((crossing, shape.prim()))
             }));
             ControlFlow::Continue(limit)
         });
@@ -152,12 +168,36 @@ impl<'m> Reference<'m> {
         self.sample(origin, direction)
     }
 
+    /// Linear RGB in [0, 1] of pixel `(x, y)` of a picture of `size`: the mean of the scene's number of samples, each
+    /// clamped, as the picture's is in the end.
+    pub fn pixel_colour(&self, size: [u32; 2], x: u32, y: u32) -> DVec3 {
+        let samples = self.model.render.samples.max(1);
+        let sum: DVec3 = pattern::points(samples)
+            .map(|[right, down]| {
+                let (origin, direction) = self.camera_ray(size, f64::from(x) + right, f64::from(y) + down);
+                self.sample(origin, direction).colour.clamp(DVec3::ZERO, DVec3::ONE)
+            })
+            .sum();
+        sum / f64::from(samples)
+    }
+
     /// What a ray sees.
     pub fn sample(&self, origin: DVec3, direction: DVec3) -> Sample {
-        match self.nearest(origin, direction) {
-            Some(hit) => self.shade(direction, hit),
+        let ray = Ray::new(origin, direction);
+        match self.closest(&ray, Shape::intersect) {
+            Some((crossing, prim)) => {
+                let surface = self.surface(&ray, crossing, prim);
+                let (colour, lights) = self.shade(&surface, Bounce::FIRST);
+                Sample {
+                    colour,
+                    hit: Some(Hit::new(&ray, crossing, prim)),
+                    lights,
+                    normal: surface.normal,
+                    geometric_normal: surface.geometric_normal,
+                }
+            }
             None => Sample {
-                colour: self.model.background,
+                colour: self.background(direction),
                 hit: None,
                 lights: 0,
                 normal: DVec3::ZERO,
@@ -166,8 +206,8 @@ impl<'m> Reference<'m> {
         }
     }
 
-    /// The picture of `size` (width, height) as RGB bytes, and the nearest hits, both row by row from
-    /// the top. `progress` is called by any thread with the number of pixels it has just finished.
+    /// The picture of `size` (width, height) as RGB bytes, and the nearest hits at the centres of pixels, both row by row
+    /// from the top. `progress` is called by any thread with the number of pixels it has just finished.
     pub fn render(&self, size: [u32; 2], progress: &(dyn Fn(u64) + Sync)) -> (Vec<[u8; 3]>, Vec<Option<Hit>>) {
         let [width, height] = size;
         (0..height)
@@ -175,8 +215,10 @@ impl<'m> Reference<'m> {
             .flat_map_iter(|y| {
                 let row: Vec<_> = (0..width)
                     .map(|x| {
-                        let sample = self.pixel(size, x, y);
-                        (encode(sample.colour, self.model.render.transfer), sample.hit)
+                        let centre = self.pixel(size, x, y);
+                        let is_one = self.model.render.samples <= 1;
+                        let colour = if is_one { centre.colour } else { self.pixel_colour(size, x, y) };
+                        (encode(colour, self.model.render.transfer), centre.hit)
                     })
                     .collect();
                 progress(u64::from(width));
@@ -185,15 +227,15 @@ impl<'m> Reference<'m> {
             .unzip()
     }
 
-    /// The crossing of least (depth, prim), and its prim.
-    fn closest(&self, ray: &Ray) -> Option<(Crossing, u32)> {
+    /// The crossing of least (depth, prim) among those of `intersect`, and its prim.
+    fn closest(&self, ray: &Ray, intersect: impl Fn(&Shape, &Ray) -> Option<Crossing>) -> Option<(Crossing, u32)> {
         let mut best: Option<(Crossing, u32)> = None;
-        self.bvh.traverse(ray, f64::INFINITY, |triangles| {
-            for triangle in triangles {
-                if let Some(crossing) = triangle.intersect(ray) {
-                    let found = (crossing.depth, triangle.prim);
+        self.bvh.traverse(ray, f64::INFINITY, |shapes| {
+            for shape in shapes {
+                if let Some(crossing) = intersect(shape, ray) {
+                    let found = (crossing.depth, shape.prim());
                     if best.is_none_or(|(least, prim)| found < (least.depth, prim)) {
-                        best = Some((crossing, triangle.prim));
+                        best = Some((crossing, shape.prim()));
                     }
                 }
             }
@@ -201,9 +243,4 @@ impl<'m> Reference<'m> {
         });
         best
     }
-}
-
-/// Triangle `prim` of `model`, its corners looked up.
-fn lookup(model: &Model, prim: u32) -> Triangle {
-    Triangle { corners: model.triangles[prim as usize].vertices.map(|v| model.positions[v as usize]), prim }
 }

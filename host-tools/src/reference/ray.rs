@@ -35,6 +35,11 @@ impl Ray {
         let step = direction / scale;
         Self { origin, step, inverse: step.recip(), axes, scale }
     }
+
+    /// The point at `depth`.
+    pub(super) fn at(&self, depth: f64) -> DVec3 {
+        self.origin + self.step * depth
+    }
 }
 
 #[cfg(test)]

@@ -1,80 +1,242 @@
-//! The colour of a point, by the [policy](super) that the integer core follows too.
+//! The light of a point: what it emits, what lights add to it, and what it mirrors and lets through.
 
 use std::ops::ControlFlow;
 
 use glam::DVec3;
 
+use super::Reference;
+use super::optics::{fresnel, reflect, refract, schlick};
 use super::ray::Ray;
-use super::triangle::Triangle;
-use super::{Hit, Reference, Sample, lookup};
-use crate::model::LightKind;
+use super::shape::Shape;
+use super::surface::Surface;
+use super::trace::Bounce;
+use crate::model::{Background, Falloff, Light, LightKind, Lobe, Material, MaterialKind, Specular};
+
+/// The nearest that a light of inverse-square falloff gets, as a part of its reach: at most 256 times as bright as there.
+const NEAREST: f64 = 1.0 / 16.0;
+
+/// The shares of a material's light.
+struct Weights {
+    diffuse: f64,
+    specular: f64,
+    /// By how much the colours of highlights and reflections go towards white.
+    whiteness: f64,
+    reflected: f64,
+    refracted: f64,
+}
+
+/// What all lights together do to a point.
+struct Lit {
+    /// Sum of E cos, linear RGB, ambient light included.
+    diffuse: DVec3,
+    /// Sum of E lobe, linear RGB.
+    specular: DVec3,
+    /// Bit i is set where light i contributes.
+    lights: u64,
+}
 
 impl Reference<'_> {
-    /// What a viewer looking along `direction` sees at `hit`.
-    pub(super) fn shade(&self, direction: DVec3, hit: Hit) -> Sample {
-        let model = self.model;
-        let triangle = &model.triangles[hit.prim as usize];
-        let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
-        let blend = |values: &[DVec3], indices: [u32; 3]| {
-            let [a, b, c] = indices.map(|i| values[i as usize]);
-            a * weights[0] + b * weights[1] + c * weights[2]
-        };
-        let point = blend(&model.positions, triangle.vertices);
-        let front = lookup(model, hit.prim).cross().normalize();
-        let geometric_normal = if front.dot(direction) > 0.0 { -front } else { front };
-        let smooth = triangle
-            .normals
-            .and_then(|normals| blend(&model.normals, normals).try_normalize())
-            .unwrap_or(geometric_normal);
-        let normal = if smooth.dot(geometric_normal) < 0.0 { -smooth } else { smooth };
+    /// What the ray that met `surface` brings, linear RGB, and the lights that contribute there.
+    pub(super) fn shade(&self, surface: &Surface<'_>, bounce: Bounce) -> (DVec3, u64) {
+        let material = surface.material;
+        let refracted = surface.refracted();
+        let weights = surface.weights(refracted);
+        let towards_white = |colour: DVec3| colour + (DVec3::ONE - colour) * weights.whiteness;
 
-        let mut irradiance = model.render.ambient;
-        let mut lights = 0;
-        for (i, light) in model.lights.iter().enumerate() {
-            let (towards, end) = match light.kind {
-                LightKind::Point(position) => (position - point, Some(position)),
-                LightKind::Directional(travel) => (-travel, None),
-            };
-            let ray = Ray::new(point, towards);
-            // Not a number if the light is at the point, which then counts as unlit.
-            let l = ray.step.normalize();
-            let cosine = normal.dot(l);
-            if cosine > 0.0 && geometric_normal.dot(l) > 0.0 && !self.blocked(&ray, hit.prim, end) {
-                irradiance += light.radiance * cosine;
-                lights |= 1_u64.checked_shl(i as u32).unwrap_or(0);
+        let lit = self.lit(surface, &weights);
+        let mut colour = material.emission + surface.albedo * lit.diffuse * weights.diffuse;
+        if let Some(specular) = &material.specular {
+            colour += towards_white(specular.colour) * lit.specular * weights.specular;
+        }
+        let mut follow = |direction: DVec3, weight: DVec3| {
+            if let Some(next) = bounce.next(weight) {
+                colour += weight * self.trace(surface, direction, next);
+            }
+        };
+        follow(surface.reflected(), towards_white(reflection_tint(material)) * weights.reflected);
+        if let Some(direction) = refracted {
+            follow(direction, transmission_tint(material) * weights.refracted);
+        }
+        (colour, lit.lights)
+    }
+
+    /// What a ray along `direction` sees that hits nothing.
+    pub(super) fn background(&self, direction: DVec3) -> DVec3 {
+        match self.model.background {
+            Background::Colour(colour) => colour,
+            Background::Sky { bottom, top } => {
+                // Scaled first: the square of a length may be out of range.
+                let direction = Ray::new(DVec3::ZERO, direction).step;
+                bottom + (top - bottom) * ((1.0 + direction.normalize().y) / 2.0)
             }
         }
-        let material = &model.materials[triangle.material as usize];
-        Sample {
-            colour: material.emission + material.diffuse * irradiance,
-            hit: Some(hit),
-            lights,
-            normal,
-            geometric_normal,
+    }
+
+    /// What the lights do to a point.
+    fn lit(&self, surface: &Surface<'_>, weights: &Weights) -> Lit {
+        let mut lit = Lit { diffuse: self.model.render.ambient, specular: DVec3::ZERO, lights: 0 };
+        let specular = surface.material.specular.filter(|_| weights.specular > 0.0);
+        if weights.diffuse == 0.0 && specular.is_none() {
+            return lit;
         }
+        for (i, light) in self.model.lights.iter().enumerate() {
+            let (towards, end) = match light.kind {
+                LightKind::Point(position) => (position - surface.point, Some(position)),
+                LightKind::Directional(travel) => (-travel, None),
+            };
+            let ray = Ray::new(surface.point, towards);
+            // Not a number if the light is at the point, which then counts as unlit.
+            let l = ray.step.normalize();
+            let cosine = surface.normal.dot(l);
+            if !(cosine > 0.0 && surface.geometric_normal.dot(l) > 0.0) {
+                continue;
+            }
+            let passed = self.passed(&ray, surface.prim, end);
+            if passed == DVec3::ZERO {
+                continue;
+            }
+            let radiance = passed * arriving(light, towards);
+            lit.diffuse += radiance * cosine;
+            if let Some(specular) = &specular {
+                lit.specular += radiance * lobe(specular, surface, l);
+            }
+            lit.lights |= 1_u64.checked_shl(i as u32).unwrap_or(0);
+        }
+        lit
     }
 
-    /// Whether a triangle other than `start`, on which `ray` starts, lies between there and `end`, a
-    /// point light; without one, anywhere along `ray`.
-    fn blocked(&self, ray: &Ray, start: u32, end: Option<DVec3>) -> bool {
+    /// What is left of the light that comes the other way along `ray`, which starts on primitive `start`, from `end`, a
+    /// point light; without one, from infinity. Zero where something opaque is between.
+    fn passed(&self, ray: &Ray, start: u32, end: Option<DVec3>) -> DVec3 {
         let limit = if end.is_some() { ray.scale } else { f64::INFINITY };
-        let blocks = |triangle: &Triangle| {
-            triangle.prim != start
-                && triangle.intersect(ray).is_some_and(|crossing| crossing.depth < limit)
-                && !self.in_plane(triangle, ray.origin)
-                && !end.is_some_and(|light| self.in_plane(triangle, light))
+        let is_between = |shape: &Shape, depth: f64| {
+            depth > 0.0 && depth < limit && !end.is_some_and(|end| shape.ends_at(end, ray, depth, limit, self.contact))
         };
-        let mut blocked = false;
-        self.bvh.traverse(ray, limit, |triangles| {
-            blocked = triangles.iter().any(blocks);
-            if blocked { ControlFlow::Break(()) } else { ControlFlow::Continue(limit) }
+        let mut passed = DVec3::ONE;
+        self.bvh.traverse(ray, limit, |shapes| {
+            for shape in shapes {
+                let depths = shape.depths_from(ray, start, self.contact);
+                let count = depths.into_iter().flatten().filter(|&depth| is_between(shape, depth)).count();
+                for _ in 0..count {
+                    passed *= self.shadow_tint(shape.prim());
+                }
+            }
+            if passed == DVec3::ZERO { ControlFlow::Break(()) } else { ControlFlow::Continue(limit) }
         });
-        blocked
+        passed
     }
 
-    /// Whether the triangle's plane contains `point`, to within [`Reference::contact`].
-    fn in_plane(&self, triangle: &Triangle, point: DVec3) -> bool {
-        let normal = triangle.cross();
-        normal.dot(point - triangle.corners[0]).abs() <= self.contact * normal.length()
+    /// What a surface leaves of light that goes through it on its way to be shaded.
+    fn shadow_tint(&self, prim: u32) -> DVec3 {
+        let model = self.model;
+        let index = prim as usize;
+        let number = match model.triangles.get(index) {
+            Some(triangle) => triangle.material,
+            None => model.spheres[index - model.triangles.len()].material,
+        };
+        let material = &model.materials[number as usize];
+        let share = match (material.weights, material.kind) {
+            _ if !material.tinted_shadow => 0.0,
+            (Some([.., refracted]), _) => refracted,
+            (None, MaterialKind::Dielectric) => 1.0,
+            (None, _) => 0.0,
+        };
+        transmission_tint(material) * share
     }
+}
+
+impl Surface<'_> {
+    /// The normal by which a ray is turned: ns, where that faces the ray and sends it to the side of ng that it is to be
+    /// on, else ng.
+    fn turned(&self, turn: impl Fn(DVec3) -> Option<DVec3>, stays: bool) -> Option<DVec3> {
+        let is_right = |out: DVec3| (out.dot(self.geometric_normal) > 0.0) == stays;
+        if self.direction.dot(self.normal) < 0.0 {
+            match turn(self.normal) {
+                Some(out) if !is_right(out) => {}
+                other => return other,
+            }
+        }
+        turn(self.geometric_normal)
+    }
+
+    /// The direction of the mirrored ray, unit length.
+    fn reflected(&self) -> DVec3 {
+        let mirror = |n| Some(reflect(self.direction, n));
+        self.turned(mirror, true).unwrap_or(self.geometric_normal)
+    }
+
+    /// The direction of the ray that goes on behind the surface, unit length; `None` where all light is reflected.
+    fn refracted(&self) -> Option<DVec3> {
+        let ior = self.material.ior;
+        let eta = if self.is_front { 1.0 / ior } else { ior };
+        self.turned(|n| refract(self.direction, n, eta), false)
+    }
+
+    /// The shares of light, given the direction of refracted light.
+    fn weights(&self, refracted: Option<DVec3>) -> Weights {
+        let material = self.material;
+        let constant = |[diffuse, specular, reflected, refracted]: [f64; 4]| Weights {
+            diffuse,
+            specular,
+            whiteness: 0.0,
+            reflected,
+            refracted,
+        };
+        let cosine = -self.direction.dot(self.normal);
+        let mut weights = match (material.weights, material.kind) {
+            (Some(given), _) => constant(given),
+            (None, MaterialKind::Lambert) => constant([1.0, 1.0, 0.0, 0.0]),
+            (None, MaterialKind::Mirror) => constant([0.0, 1.0, 1.0, 0.0]),
+            (None, MaterialKind::Metal) => {
+                Weights { whiteness: schlick(0.0, cosine), ..constant([0.0, 1.0, 1.0, 0.0]) }
+            }
+            (None, MaterialKind::Dielectric) => {
+                // Angles are wider on the side of the lower index.
+                let is_denser_behind = self.is_front == (material.ior >= 1.0);
+                let behind = refracted.map_or(0.0, |out| -out.dot(self.normal));
+                let reflected = fresnel(material.ior, if is_denser_behind { cosine } else { behind });
+                constant([0.0, 1.0, reflected, 1.0 - reflected])
+            }
+        };
+        if refracted.is_none() {
+            weights.reflected += weights.refracted;
+            weights.refracted = 0.0;
+        }
+        weights
+    }
+}
+
+/// The tint of what a surface reflects.
+fn reflection_tint(material: &Material) -> DVec3 {
+    match material.kind {
+        MaterialKind::Metal | MaterialKind::Mirror => material.colour,
+        MaterialKind::Dielectric => DVec3::ONE,
+        MaterialKind::Lambert => material.specular.map_or(DVec3::ONE, |specular| specular.colour),
+    }
+}
+
+/// The tint of what passes through a surface.
+fn transmission_tint(material: &Material) -> DVec3 {
+    if material.kind == MaterialKind::Dielectric { material.colour } else { DVec3::ONE }
+}
+
+/// What arrives of a light over the way `towards` it, without what is in between.
+fn arriving(light: &Light, towards: DVec3) -> DVec3 {
+    match (light.kind, light.falloff) {
+        (LightKind::Point(_), Falloff::InverseSquare { reach }) => {
+            let distance = (towards.length() / reach).max(NEAREST);
+            light.radiance / (distance * distance)
+        }
+        _ => light.radiance,
+    }
+}
+
+/// How much of a light at the unit direction `l` is mirrored towards the viewer.
+fn lobe(specular: &Specular, surface: &Surface<'_>, l: DVec3) -> f64 {
+    let v = -surface.direction;
+    let cosine = match specular.lobe {
+        Lobe::BlinnPhong => (l + v).try_normalize().map_or(0.0, |half| half.dot(surface.normal)),
+        Lobe::Phong => reflect(-l, surface.normal).dot(v),
+    };
+    libm::pow(cosine.max(0.0), specular.exponent.into())
 }

@@ -1,21 +1,17 @@
 //! The tree against a loop: bit for bit the same crossings.
 
 use super::*;
-use crate::model::{Camera, RenderSettings, Transfer};
+use crate::model::{Sphere, Triangle};
 
-/// A model of bare triangles.
-fn soup(corners: &[[DVec3; 3]]) -> Model {
+/// A model of bare triangles and spheres.
+fn soup(corners: &[[DVec3; 3]], spheres: &[Sphere]) -> Model {
     Model {
         positions: corners.iter().flatten().copied().collect(),
-        normals: Vec::new(),
         triangles: (0..corners.len() as u32)
-            .map(|i| crate::model::Triangle { vertices: [3 * i, 3 * i + 1, 3 * i + 2], normals: None, material: 0 })
+            .map(|i| Triangle { vertices: [3 * i, 3 * i + 1, 3 * i + 2], normals: None, material: 0 })
             .collect(),
-        materials: Vec::new(),
-        lights: Vec::new(),
-        camera: Camera { position: DVec3::ZERO, look_at: DVec3::X, up: DVec3::Z, fov_y: 1.0 },
-        background: DVec3::ZERO,
-        render: RenderSettings { size: [1, 1], ambient: DVec3::ZERO, transfer: Transfer::Linear },
+        spheres: spheres.to_vec(),
+        ..Model::default()
     }
 }
 
@@ -29,15 +25,14 @@ fn coarse(state: &mut u64) -> DVec3 {
 
 /// Rays for which the tree and a loop over all triangles differ in any bit.
 fn differences(tree: &Reference, all: &Model, rays: &[(DVec3, DVec3)]) -> usize {
-    let triangles: Vec<_> = (0..all.triangles.len() as u32).map(|i| lookup(all, i)).collect();
+    let shapes: Vec<Shape> = Shape::all(all).collect();
     let loops = |ray: &Ray| {
-        let hits = triangles.iter().filter(|triangle| triangle.has_area());
-        hits.filter_map(|triangle| Some((triangle.intersect(ray)?, triangle.prim)))
-            .min_by(|(a, i), (b, j)| a.depth.total_cmp(&b.depth).then(i.cmp(j)))
+        let hits = shapes.iter().filter_map(|shape| Some((shape.intersect(ray)?, shape.prim())));
+        hits.min_by(|(a, i), (b, j)| a.depth.total_cmp(&b.depth).then(i.cmp(j)))
     };
     let differs = |&&(origin, direction): &&(DVec3, DVec3)| {
         let ray = Ray::new(origin, direction);
-        tree.closest(&ray) != loops(&ray)
+        tree.closest(&ray, Shape::intersect) != loops(&ray)
     };
     rays.iter().filter(differs).count()
 }
@@ -52,7 +47,10 @@ fn the_tree_loses_nothing_that_a_loop_finds() {
         corners.push(corners[0]);
         corners.push([corners[1][0], corners[1][1], corners[1][0]]);
         corners.push([corners[2][0]; 3]);
-        let model = soup(&corners);
+        let spheres: Vec<Sphere> = (0..40)
+            .map(|i| Sphere { centre: coarse(&mut state), radius: f64::from(i % 5 + 1) / 16.0, material: 0 })
+            .collect();
+        let model = soup(&corners, &spheres);
         let mut rays = Vec::new();
         for from in corners.iter().flatten().take(100) {
             let (origin, along) = (coarse(&mut state) * 3.0, coarse(&mut state));
@@ -67,7 +65,8 @@ fn the_tree_loses_nothing_that_a_loop_finds() {
         }
         let tree = Reference::new(&model);
         assert_eq!(differences(&tree, &model, &rays), 0);
-        let missing = soup(&corners[1..200]);
-        assert_ne!(differences(&Reference::new(&missing), &model, &rays), 0);
+        for missing in [soup(&corners[1..200], &spheres), soup(&corners, &spheres[1..])] {
+            assert_ne!(differences(&Reference::new(&missing), &model, &rays), 0);
+        }
     }
 }

@@ -24,7 +24,7 @@ pub(super) struct Triangle {
     pub(super) prim: u32,
 }
 
-/// Where a ray meets the plane of a triangle, inside it.
+/// Where a ray meets a triangle, or another surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Crossing {
     /// Depth of the point, positive.
@@ -35,11 +35,24 @@ pub(super) struct Crossing {
     pub(super) v: f64,
 }
 
+impl Crossing {
+    /// A crossing of what has no corners.
+    pub(super) const fn without_weights(depth: f64) -> Self {
+        Self { depth, u: 0.0, v: 0.0 }
+    }
+}
+
 impl Triangle {
     /// e1 x e2: twice the area long, on the side from which the corners run counter-clockwise.
     pub(super) fn cross(&self) -> DVec3 {
         let [v0, v1, v2] = self.corners;
         (v1 - v0).cross(v2 - v0)
+    }
+
+    /// Whether the plane contains `point`, to within a distance of `contact`.
+    pub(super) fn in_plane(&self, point: DVec3, contact: f64) -> bool {
+        let normal = self.cross();
+        normal.dot(point - self.corners[0]).abs() <= contact * normal.length()
     }
 
     /// Whether f64 can tell the triangle's plane. One of no area cannot be shaded, and is no surface.

@@ -169,3 +169,32 @@ fn a_material_file_that_is_missing_or_malformed_is_a_warning() {
         assert_eq!(picture(&folder), picture(&plain));
     }
 }
+
+/// Textures and looks that are none: what is drawn in their place is said, and it is not black.
+#[test]
+fn a_texture_that_is_none_is_a_warning() {
+    let obj = format!("mtllib scene.mtl\nusemtl wall\n{TRIANGLE}");
+    let none = "drawn with Kd alone";
+    let cases: [(&[u8], &str); 5] = [
+        (b"newmtl wall\nmap_Kd none.png\n", {
+            "warning: scene.obj: textures that cannot be read, {none}: `none.png` (no such file)\n"
+        }),
+        (b"newmtl wall\nmap_Kd scene.obj\n", {
+            "warning: scene.obj: textures that cannot be read, {none}: `scene.obj` (not a PNG file)\n"
+        }),
+        (b"newmtl wall\nmap_Kd\n", {
+            "warning: scene.mtl:2: map_Kd of material `wall`: a file name is missing; drawn without a texture\n"
+        }),
+        (b"newmtl wall\nNs -5\n", "warning: scene.mtl:2: Ns of material `wall`: -5 is below 0; drawn with 50\n"),
+        (b"newmtl wall\nNi 0\nillum 12\n", {
+            "warning: scene.mtl:2: Ni of material `wall`: 0 is below 0.1; drawn with 1.5\n\
+             warning: scene.mtl:3: illum of material `wall`: `12` is not from 0 to 10; ignored\n"
+        }),
+    ];
+    for (mtl, warnings) in cases {
+        let folder = Folder::new(&[("scene.obj", obj.as_bytes()), ("scene.mtl", mtl)]);
+        folder.succeeds("render scene.obj --size 16x12 -o out.png", &warnings.replace("{none}", none));
+        let picture = Picture::read_png(&folder.path("out.png")).unwrap();
+        assert!(picture.pixels().iter().any(|pixel| *pixel > [100; 3]));
+    }
+}

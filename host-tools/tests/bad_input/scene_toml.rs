@@ -1,5 +1,7 @@
 //! A `scene.toml` that says what cannot be.
 
+use host_tools::picture::Picture;
+
 use crate::command::Folder;
 
 /// Renders `scene.toml`, which is `model = "scene.obj"` and these lines, and expects the message with its line.
@@ -125,4 +127,70 @@ fn extremes_that_are_good() {
             }
         }
     }
+}
+
+#[test]
+fn materials_that_cannot_be() {
+    for (lines, message) in [
+        ("[material.default]\nior = 0", "3: ior of 0; it must be from 0.1 to 10"),
+        ("[material.default]\nior = nan", "3: NaN is not a finite number"),
+        ("[material.default]\ncolour = [0, -1, 0]", {
+            "3: colour [0, -1, 0] is out of range; each channel is from 0 to 1.0"
+        }),
+        ("[material.default]\nexponent = 20000", "3: exponent of 20000; it must be from 1 to 10000"),
+        ("[material.default]\nweights = [1, 0, 0]", "3: invalid length 3, expected an array of length 4"),
+        ("[material.unused]\nkind = 'glass'", "3: unknown value `glass`; the nearest known one is `metal`"),
+        ("[[sphere]]\ncentre = [0, 0, 0]\nradius = 0", "4: radius of 0; it must be above 0 and at most 1e30"),
+    ] {
+        refused(lines, message);
+    }
+}
+
+/// What the reference draws and no kernel does yet is refused where the picture would be of another scene.
+#[test]
+fn what_kernels_do_not_have() {
+    for (lines, message) in [
+        ("[[sphere]]\ncentre = [0, 0, 0]\nradius = 1", "spheres are not supported yet by any kernel; use a mesh"),
+        ("[camera]\nprojection = 'orthographic'\nheight = 3", {
+            "orthographic projection is not supported yet by any kernel; use \"perspective\""
+        }),
+        ("[[light]]\nposition = [0, 0, 3]\nfalloff = 'inverse-square'\nreach = 1", {
+            "inverse-square falloff is not supported yet by any kernel; use \"none\""
+        }),
+        ("[background]\nsky = [[0, 0, 0], [1, 1, 1]]", {
+            "sky is not supported yet by any kernel; give a background colour"
+        }),
+    ] {
+        refused(lines, &format!(" {message}"));
+    }
+}
+
+/// And said where it is the same scene, drawn more plainly; never in black.
+#[test]
+fn what_kernels_draw_more_plainly() {
+    for (lines, what) in [
+        ("[render]\nsamples = 4", "samples: more than one a pixel is not supported yet; drawn with one"),
+        ("[material.default]\nkind = 'mirror'", "material `default` is drawn as Lambert; not supported yet: mirror"),
+        ("[material.default]\nkind = 'dielectric'\nweights = [0, 0.5, 0.1, 0.8]", {
+            "material `default` is drawn as Lambert; not supported yet: dielectric, transparency, weights"
+        }),
+    ] {
+        let folder = Folder::with_triangle();
+        folder.write("scene.toml", format!("model = 'scene.obj'\n{lines}\n").as_bytes());
+        folder.succeeds("render scene.toml --size 9x7 -o out.png", &format!("warning: scene.toml: {what}\n"));
+        let picture = Picture::read_png(&folder.path("out.png")).unwrap();
+        assert!(picture.pixels().iter().any(|pixel| *pixel > [100; 3]), "{lines}");
+    }
+}
+
+/// A sphere of a material that nothing defines is grey, and one that is the whole scene needs no OBJ.
+#[test]
+fn spheres_alone() {
+    let folder = Folder::with_triangle();
+    folder.write("scene.toml", b"[[sphere]]\ncentre = [0, 0, 0]\nradius = 1\nmaterial = 'gold'\n");
+    folder.refuses(
+        "inspect scene.toml",
+        "warning: scene.toml:4: materials that no table defines, drawn in grey (Kd 0.8): `gold`\n\
+         error: scene.toml: spheres are not supported yet by any kernel; use a mesh\n",
+    );
 }

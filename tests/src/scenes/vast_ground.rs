@@ -1,7 +1,7 @@
 //! Everyday objects on a ground plane that is far larger than they are: few of a grid's steps are left for them.
 
 use glam::DVec3;
-use host_tools::model::{Camera, Light, LightKind, Material, Model, RenderSettings, Transfer, Triangle};
+use host_tools::model::{Camera, Light, LightKind, Material, Model, Projection, RenderSettings, Triangle};
 
 use crate::meshes;
 
@@ -39,24 +39,19 @@ const BALL_CUTS: i64 = 40;
 #[must_use]
 pub fn vast_ground(factor: f64) -> Model {
     let mut model = Model {
-        positions: Vec::new(),
-        normals: Vec::new(),
-        triangles: Vec::new(),
         materials: [("ground", [0.45, 0.42, 0.35]), ("wood", [0.6, 0.35, 0.15]), ("rubber", [0.75, 0.75, 0.8])]
-            .map(|(name, diffuse)| Material { name: name.into(), diffuse: diffuse.into(), emission: DVec3::ZERO })
+            .map(|(name, colour)| Material { name: name.into(), colour: colour.into(), ..Material::default() })
             .into(),
-        lights: vec![Light {
-            kind: LightKind::Directional(DVec3::new(-0.5, -1.0, -0.3)),
-            radiance: DVec3::new(1.0, 0.95, 0.85),
-        }],
+        lights: vec![Light::new(LightKind::Directional(DVec3::new(-0.5, -1.0, -0.3)), DVec3::new(1.0, 0.95, 0.85))],
         camera: Camera {
             position: DVec3::new(1.3, 2.4, 5.9),
             look_at: DVec3::new(0.0, 0.55, 0.0),
             up: DVec3::Y,
-            fov_y: 0.7,
+            projection: Projection::Perspective { fov_y: 0.7 },
         },
-        background: DVec3::new(0.35, 0.5, 0.8),
-        render: RenderSettings { size: [96, 64], ambient: DVec3::splat(0.08), transfer: Transfer::Srgb },
+        background: DVec3::new(0.35, 0.5, 0.8).into(),
+        render: RenderSettings { size: [96, 64], ambient: DVec3::splat(0.08), ..RenderSettings::default() },
+        ..Model::default()
     };
     let half = factor / 2.0;
     let corner = |x: f64, z: f64| DVec3::new(x * half, 0.0, z * half);

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use glam::DVec3;
-use host_tools::model::{LightKind, Model, Transfer};
+use host_tools::model::{Background, LightKind, Model, Projection, Transfer};
 
 use crate::reader::{Blob, Bounds, Radiance};
 
@@ -78,7 +78,8 @@ fn header(blob: &Blob, model: &Model) -> Checked {
     rule(header.file_triangles == model.triangles.len() as u64, "triangles in the file")?;
     rule(header.arithmetic == [0; 4], "arithmetic")?;
     rule(blob.corners.len() == if smooth { blob.triangles.len() } else { 0 }, "smooth")?;
-    rule(is_light(&header.background, model.background), "background")?;
+    let Background::Colour(background) = model.background else { return Err("background".into()) };
+    rule(is_light(&header.background, background), "background")?;
     rule(is_light(&header.ambient, model.render.ambient), "ambient")
 }
 
@@ -100,7 +101,8 @@ fn camera(blob: &Blob, model: &Model) -> Checked {
             *component = (sum + half) >> header.fraction_bits;
         }
         // Pixel centres on a picture at distance 1.
-        let extent = (camera.fov_y / 2.0).tan();
+        let Projection::Perspective { fov_y } = camera.projection else { return Err("projection".into()) };
+        let extent = (fov_y / 2.0).tan();
         let meant = forward
             + right * (extent / height * (2.0 * x as f64 + 1.0 - width))
             + up * (extent / height * (height - 2.0 * y as f64 - 1.0));
@@ -170,7 +172,7 @@ fn triangles(blob: &Blob, model: &Model) -> Checked {
         rule(triangle.material <= kernel.material_most, "range of materials")?;
         let material = blob.materials.get(triangle.material as usize).ok_or("a material that is not there")?;
         let meant = &model.materials[source.material as usize];
-        let albedo = meant.diffuse.to_array().map(|c| (c * 65_535.0 + 0.5).floor() as u16);
+        let albedo = meant.colour.to_array().map(|c| (c * 65_535.0 + 0.5).floor() as u16);
         rule(material.albedo == albedo && is_light(&material.emission, meant.emission), "material")?;
     }
     let present: HashSet<u32> = blob.ids.iter().copied().collect();

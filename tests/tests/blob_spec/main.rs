@@ -8,7 +8,7 @@ use agree::agree;
 use glam::DVec3;
 use host_tools::engine;
 use host_tools::import::{Embedded, load_from};
-use host_tools::model::{Light, LightKind, Model, Transfer, Triangle};
+use host_tools::model::{Light, LightKind, Model, Projection, Transfer, Triangle};
 use host_tools::prepare::{Options, Prepared};
 use reader::{Blob, crc32, read};
 
@@ -25,9 +25,9 @@ fn flat() -> Model {
     model.triangles.iter_mut().for_each(|triangle| triangle.normals = None);
     model.render.transfer = Transfer::Linear;
     model.render.size = [33, 57];
-    model.background = DVec3::new(0.0, 1e-6, 30_000.0);
+    model.background = DVec3::new(0.0, 1e-6, 30_000.0).into();
     let kind = LightKind::Directional(DVec3::new(0.3, -2.0, -0.4));
-    model.lights.push(Light { kind, radiance: DVec3::new(3.0, 0.0, 1e-3) });
+    model.lights.push(Light::new(kind, DVec3::new(3.0, 0.0, 1e-3)));
     model
 }
 
@@ -109,13 +109,16 @@ fn another_scene_is_told_from_the_blobs() {
         };
         assert_eq!(fault(&|m| m.lights.truncate(1)), "needs");
         assert_eq!(fault(&|m| m.render.size[0] += 1), "size");
-        assert_eq!(fault(&|m| m.background.z *= 1.0001), "background");
+        assert_eq!(fault(&|m| m.background = DVec3::new(0.0, 1e-6, 30_003.0).into()), "background");
         assert_eq!(fault(&|m| m.render.ambient.x *= 1.0001), "ambient");
         assert_eq!(fault(&|m| m.camera.position.x += 0.01), "eye");
-        assert_eq!(fault(&|m| m.camera.fov_y *= 1.01), "directions");
+        assert_eq!(
+            fault(&|m| m.camera.projection = Projection::Perspective { fov_y: 40.4f64.to_radians() }),
+            "directions"
+        );
         assert_eq!(fault(&|m| m.positions[9].y += 0.01), "vertices");
         assert_eq!(fault(&|m| m.triangles[0].vertices.rotate_left(1)), "vertices");
-        assert_eq!(fault(&|m| m.materials.iter_mut().for_each(|x| x.diffuse.y *= 0.999)), "material");
+        assert_eq!(fault(&|m| m.materials.iter_mut().for_each(|x| x.colour.y *= 0.999)), "material");
         assert_eq!(fault(&|m| m.lights[0].radiance.x *= 1.001), "strength of a light");
         assert_eq!(fault(&|m| m.lights[1].kind = LightKind::Directional(DVec3::X)), "direction of a light");
         assert_eq!(fault(&|m| m.lights.swap(0, 1)), "strength of a light");

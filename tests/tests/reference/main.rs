@@ -1,14 +1,17 @@
 //! The f64 reference against what it does not share a line with: Möller and Trumbore's test in a loop
 //! over all triangles, closed surfaces, and answers worked out by hand.
 
+mod materials;
 mod nearest;
 mod picture;
+mod recursion;
+mod scenes;
 mod shading;
 
 use std::f64::consts::FRAC_PI_2;
 
 use glam::DVec3;
-use host_tools::model::{Camera, Light, LightKind, Material, Model, RenderSettings, Transfer, Triangle};
+use host_tools::model::{Camera, Light, LightKind, Material, Model, Projection, RenderSettings, Triangle};
 use tests::{meshes, oracle, random::SplitMix64};
 
 /// A triangle's vertices.
@@ -50,19 +53,27 @@ fn cuboid(low: [i64; 3], high: [i64; 3]) -> Vec<Corners> {
     centred(&meshes::cuboid(low, high))
 }
 
+/// What is seen where there is nothing.
+const BACKGROUND: DVec3 = DVec3::new(0.1, 0.2, 0.3);
+
 /// White flat triangles, lit by `lights`, seen from (0, 0, 5).
 fn model(corners: &[Corners], lights: &[LightKind]) -> Model {
     Model {
         positions: corners.iter().flatten().copied().collect(),
-        normals: Vec::new(),
         triangles: (0..corners.len() as u32)
             .map(|i| Triangle { vertices: [3 * i, 3 * i + 1, 3 * i + 2], normals: None, material: 0 })
             .collect(),
-        materials: vec![Material { name: "white".into(), diffuse: DVec3::ONE, emission: DVec3::ZERO }],
-        lights: lights.iter().map(|&kind| Light { kind, radiance: DVec3::ONE }).collect(),
-        camera: Camera { position: DVec3::new(0.0, 0.0, 5.0), look_at: DVec3::ZERO, up: DVec3::Y, fov_y: FRAC_PI_2 },
-        background: DVec3::new(0.1, 0.2, 0.3),
-        render: RenderSettings { size: [64, 48], ambient: DVec3::ZERO, transfer: Transfer::Srgb },
+        materials: vec![Material { name: "white".into(), colour: DVec3::ONE, ..Material::default() }],
+        lights: lights.iter().map(|&kind| Light::new(kind, DVec3::ONE)).collect(),
+        camera: Camera {
+            position: DVec3::new(0.0, 0.0, 5.0),
+            look_at: DVec3::ZERO,
+            up: DVec3::Y,
+            projection: Projection::Perspective { fov_y: FRAC_PI_2 },
+        },
+        background: BACKGROUND.into(),
+        render: RenderSettings { size: [64, 48], ..RenderSettings::default() },
+        ..Model::default()
     }
 }
 

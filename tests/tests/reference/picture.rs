@@ -6,7 +6,7 @@ use glam::DVec3;
 use host_tools::model::{LightKind, Transfer};
 use host_tools::reference::{Reference, encode};
 
-use crate::{cuboid, model, sphere};
+use crate::{BACKGROUND, cuboid, model, sphere};
 
 #[test]
 fn pictures_do_not_depend_on_the_unit_of_length() {
@@ -47,7 +47,7 @@ fn a_picture_is_its_pixels_row_by_row() {
             let sample = tracer.pixel(size, i as u32 % 40, i as u32 / 40);
             assert_eq!((rgb, hit), (encode(sample.colour, transfer), sample.hit));
         }
-        assert_eq!(bytes[0], encode(scene.background, transfer));
+        assert_eq!(bytes[0], encode(BACKGROUND, transfer));
         assert!(hits.iter().flatten().count() > 10);
     }
 }

@@ -17,7 +17,7 @@ fn a_lit_plane_has_the_cosine_of_its_light() {
     let mut plane = model(&quad(a, b, -a, -b), &lights);
     plane.lights[0].radiance = DVec3::new(1.0, 0.5, 8.0);
     plane.render.ambient = DVec3::new(0.01, 0.02, 0.03);
-    plane.materials[0].diffuse = DVec3::new(0.5, 0.25, 0.125);
+    plane.materials[0].colour = DVec3::new(0.5, 0.25, 0.125);
     plane.materials[0].emission = DVec3::new(0.0, 2.0, 0.0);
     let tracer = Reference::new(&plane);
     for x in 0..64 {
@@ -28,7 +28,7 @@ fn a_lit_plane_has_the_cosine_of_its_light() {
             let point_cosine = 3.0 / (light - point).length();
             let sun_cosine = 3.0 / 14.0_f64.sqrt();
             let irradiance = plane.render.ambient + plane.lights[0].radiance * point_cosine + DVec3::splat(sun_cosine);
-            let expected = plane.materials[0].emission + plane.materials[0].diffuse * irradiance;
+            let expected = plane.materials[0].emission + plane.materials[0].colour * irradiance;
             assert!((sample.colour - expected).abs().max_element() < 1e-12);
             assert_eq!((sample.lights, sample.normal), (0b11, DVec3::Z));
         }
