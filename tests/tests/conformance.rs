@@ -181,12 +181,12 @@ fn exact29_over_small_scenes() {
     small::<Width29>(1_000_000);
 }
 
-/// The long run takes 100,000 rays, the short one a tenth.
-fn large<W>()
+/// The long run takes 100,000 rays.
+fn large<W>(rays: usize)
 where
     W: Width<Word: Into<i64>, Wide: Into<i128>>,
 {
-    let count = 10_000 * tests::effort();
+    let count = if tests::effort() > 1 { 100_000 } else { rays };
     compare::<W>("heightfield of 80,000", &meshes::heightfield(W::GRID_BITS, 200, 5), 8, count, 5);
     for scene in ["bunny/bunny_smooth.obj", "sponza-dabrovic/scene.toml", "coffee/coffee.obj"] {
         let Some(path) = shared::scene(scene) else { continue };
@@ -199,17 +199,17 @@ where
 
 #[test]
 fn exact14_over_large_scenes() {
-    large::<Width14>();
+    large::<Width14>(10_000);
 }
 
 #[test]
 fn exact20_over_large_scenes() {
-    large::<Width20>();
+    large::<Width20>(3_000);
 }
 
 #[test]
 fn exact29_over_large_scenes() {
-    large::<Width29>();
+    large::<Width29>(10_000);
 }
 
 /// A comparison that cannot fail would prove nothing: with one triangle's vertex moved by one unit it must fail.
