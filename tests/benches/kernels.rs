@@ -136,20 +136,19 @@ fn main() -> ExitCode {
         |name: &str| arguments.kernels.is_empty() || name == "f32" || arguments.kernels.iter().any(|k| k == name);
     let entries: Vec<Entry> = entries().into_iter().filter(|&(name, ..)| wanted(name)).collect();
     let options = options(arguments.leaf);
+    if let Some(scene) = &arguments.once {
+        let kernel = arguments.kernels.first().map_or("f32", String::as_str);
+        let named = entries.iter().find(|&&(name, ..)| name == kernel);
+        let (Some((_, prepare, draw, _)), Some(model)) = (named, scenes::named(scene, [arguments.size; 2])) else {
+            return ExitCode::from(2);
+        };
+        draw(&prepare(&model, &options));
+        return ExitCode::SUCCESS;
+    }
     let models: Vec<(&str, Model)> = scenes::with_shared([arguments.size; 2])
         .into_iter()
         .filter(|(name, _)| name.contains('/') || ["demo", "inside", "flat"].contains(name))
         .collect();
-    if let Some(scene) = &arguments.once {
-        let kernel = arguments.kernels.first().map_or("f32", String::as_str);
-        let named = entries.iter().find(|&&(name, ..)| name == kernel);
-        let (Some((_, prepare, draw, _)), Some((_, model))) = (named, models.iter().find(|(name, _)| name == scene))
-        else {
-            return ExitCode::from(2);
-        };
-        draw(&prepare(model, &options));
-        return ExitCode::SUCCESS;
-    }
     if entries.len() < 2 {
         eprintln!("no kernel has a name of {:?}", arguments.kernels);
         return ExitCode::from(2);

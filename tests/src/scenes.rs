@@ -139,6 +139,21 @@ const SHARED: [&str; 6] = [
     "cornell-box/scene.toml",
 ];
 
+/// One of [`with_shared`], without a look at the others; `None` where there is none of this name.
+///
+/// # Panics
+/// If it is a shared model and does not import.
+#[must_use]
+pub fn named(name: &str, size: [u32; 2]) -> Option<Model> {
+    let mut model = if name.contains('/') {
+        import::load(&shared::scene(name)?).expect("a real model").model
+    } else {
+        all().into_iter().find(|&(known, _)| known == name)?.1
+    };
+    model.render.size = size;
+    Some(model)
+}
+
 /// The shared models that are present, and the golden scenes, all at one size.
 ///
 /// # Panics
