@@ -4,6 +4,7 @@ pub mod blobs;
 pub mod boards;
 pub mod fuzz;
 pub mod meshes;
+pub mod octants;
 pub mod oracle;
 pub mod random;
 pub mod rays;

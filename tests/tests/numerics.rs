@@ -3,12 +3,13 @@
 
 use core_rt::colour::{Colour, Rgb16, Transfer};
 use core_rt::exact::{Exact, Ray, Reciprocal, Width, Width14, Width20, Width29};
-use core_rt::kernel::{ANY_OCTANT, Bounds, Kernel, NONE};
+use core_rt::kernel::{Bounds, Kernel, NONE};
 use core_rt::num::{Word, cross, sub};
 use core_rt::space::{Grid14, Grid29, Space};
 use ethnum::U256;
 use fixed::types::U16F16;
 use tests::meshes;
+use tests::octants::enter;
 use tests::random::SplitMix64;
 use tests::rays::{self, Rays};
 
@@ -196,23 +197,6 @@ fn resolved_hits_of_exact20() {
     within_tolerance("exact20 point, grid units", point);
 }
 
-/// Entering the boxes of a node as the ray's octant does; every octant must say the same.
-fn enter<W: Width>(ray: &Ray<W>, node: &<Exact<W> as Kernel>::Node, limit: W::Word) -> [Option<W::Word>; 2] {
-    let any = Exact::<W>::enter::<ANY_OCTANT>(ray, node, limit);
-    let chosen = match Exact::<W>::octant(ray) {
-        0 => Exact::<W>::enter::<0>(ray, node, limit),
-        1 => Exact::<W>::enter::<1>(ray, node, limit),
-        2 => Exact::<W>::enter::<2>(ray, node, limit),
-        3 => Exact::<W>::enter::<3>(ray, node, limit),
-        4 => Exact::<W>::enter::<4>(ray, node, limit),
-        5 => Exact::<W>::enter::<5>(ray, node, limit),
-        6 => Exact::<W>::enter::<6>(ray, node, limit),
-        _ => Exact::<W>::enter::<7>(ray, node, limit),
-    };
-    assert_eq!(any, chosen, "{ray:?}");
-    any
-}
-
 /// A hit's box is always entered, even with the hit itself as the limit.
 fn no_false_miss<W>()
 where
@@ -224,7 +208,7 @@ where
         let node = Exact::<W>::node([bounds; 2], [0; 2]);
         let depth = Exact::<W>::intersect(ray, triangle).expect("a hit");
         for limit in [Exact::<W>::limit(&depth), Exact::<W>::reach(ray)] {
-            let [first, second] = enter::<W>(ray, &node, limit);
+            let [first, second] = enter::<Exact<W>>(ray, &node, limit);
             assert!(first.is_some() && first == second, "{ray:?} misses {bounds:?}");
             assert!(Exact::<W>::within(first.expect("entered"), limit));
         }

@@ -10,6 +10,7 @@ use core_rt::blob::{BlobError, Prefix};
 use core_rt::bvh::Child;
 use core_rt::exact::Exact14;
 use core_rt::kernel::Kernel;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::failure::{Failure, warn};
 use crate::decimate;
@@ -89,6 +90,26 @@ impl From<KnobArguments> for Knobs {
 impl KnobArguments {
     fn any(self) -> bool {
         Knobs::from(self) != Knobs::default()
+    }
+}
+
+/// How many threads share the work.
+#[derive(Debug, Args)]
+pub(super) struct ThreadArguments {
+    /// Threads [default: one a core]
+    #[arg(
+        long,
+        value_name = "N",
+        value_parser = clap::value_parser!(u16).range(1..=1024),
+        allow_negative_numbers = true
+    )]
+    threads: Option<u16>,
+}
+
+impl ThreadArguments {
+    /// The threads.
+    pub(super) fn pool(&self) -> Result<ThreadPool, Failure> {
+        Ok(ThreadPoolBuilder::new().num_threads(self.threads.unwrap_or(0).into()).build()?)
     }
 }
 

@@ -6,7 +6,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::input::{Scene, SceneArguments};
+use super::input::{Scene, SceneArguments, ThreadArguments};
 use super::{output, progress};
 use crate::files;
 use crate::render::Rendered;
@@ -24,14 +24,8 @@ pub(super) struct Arguments {
     #[arg(short, value_name = "PNG")]
     output: PathBuf,
 
-    /// Threads [default: one a core]
-    #[arg(
-        long,
-        value_name = "N",
-        value_parser = clap::value_parser!(u16).range(1..=1024),
-        allow_negative_numbers = true
-    )]
-    threads: Option<u16>,
+    #[command(flatten)]
+    threads: ThreadArguments,
 
     /// Print one JSON object
     #[arg(long)]
@@ -63,7 +57,7 @@ struct Rays {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     files::check_writable(&arguments.output)?;
     let scene = arguments.scene.load()?;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.unwrap_or(0).into()).build()?;
+    let pool = arguments.threads.pool()?;
     let begin = Instant::now();
     let Rendered { picture, counts } = pool.install(|| picture(&scene))?;
     let seconds = begin.elapsed().as_secs_f64();

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::input::SceneArguments;
+use super::input::{SceneArguments, ThreadArguments};
 use super::{output, progress};
 use crate::engine::ENGINES;
 use crate::files::{self, AtomicFile, FileError};
@@ -47,14 +47,8 @@ pub(super) struct Arguments {
     #[arg(short, value_name = "OUT.csv")]
     output: PathBuf,
 
-    /// Threads [default: one a core]
-    #[arg(
-        long,
-        value_name = "N",
-        value_parser = clap::value_parser!(u16).range(1..=1024),
-        allow_negative_numbers = true
-    )]
-    threads: Option<u16>,
+    #[command(flatten)]
+    threads: ThreadArguments,
 
     /// Print one JSON object
     #[arg(long)]
@@ -91,7 +85,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// Traces all rays by `tracer`.
 fn trace(arguments: &Arguments, kernel: &'static str, tracer: &dyn Trace) -> Result<(), Failure> {
     let begin = Instant::now();
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.unwrap_or(0).into()).build()?;
+    let pool = arguments.threads.pool()?;
     let (mut rays, bar) = open(&arguments.rays)?;
     let mut sink = Sink::create(&arguments.output)?;
     sink.write(format!("{HITS_HEADER}\n").as_bytes())?;

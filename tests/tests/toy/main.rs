@@ -8,9 +8,10 @@ mod truth;
 mod width;
 
 use core_rt::exact::{Depth, Exact, Ray, Width};
-use core_rt::kernel::{ANY_OCTANT, Bounds, Kernel, NONE};
+use core_rt::kernel::{Bounds, Kernel, NONE};
 use num::{BigInt, BigRational};
 use rayon::prelude::*;
+use tests::octants;
 use truth::{Determinants, VECTORS, Vector, difference, index, meets, vector};
 use width::{DEPTH, FILTER, GRID_BITS, NOTHING, RECIPROCAL, SLACK, Toy};
 
@@ -26,22 +27,11 @@ fn is_first_of_its_copies(points: &[Vector]) -> bool {
     (0..3).all(|axis| points.iter().any(|point| point[axis] == 0))
 }
 
-/// Entering a box as the ray's octant does; every way must say the same.
+/// Entering a box, which both children of a node have.
 fn enter<W: Width<Word = i32>>(ray: &Ray<W>, node: &<Exact<W> as Kernel>::Node, limit: i32) -> Option<i32> {
-    let any = Exact::<W>::enter::<ANY_OCTANT>(ray, node, limit);
-    let chosen = match Exact::<W>::octant(ray) {
-        0 => Exact::<W>::enter::<0>(ray, node, limit),
-        1 => Exact::<W>::enter::<1>(ray, node, limit),
-        2 => Exact::<W>::enter::<2>(ray, node, limit),
-        3 => Exact::<W>::enter::<3>(ray, node, limit),
-        4 => Exact::<W>::enter::<4>(ray, node, limit),
-        5 => Exact::<W>::enter::<5>(ray, node, limit),
-        6 => Exact::<W>::enter::<6>(ray, node, limit),
-        _ => Exact::<W>::enter::<7>(ray, node, limit),
-    };
-    assert_eq!(any, chosen, "{ray:?}");
-    assert_eq!(any[0], any[1], "{ray:?}");
-    any[0]
+    let [first, second] = octants::enter::<Exact<W>>(ray, node, limit);
+    assert_eq!(first, second, "{ray:?}");
+    first
 }
 
 /// A ray and the segment from its origin to where it is at t = 1.
