@@ -50,6 +50,14 @@ impl Radiance {
 /// Diffuse reflectance, linear RGB: `value / 65535`, up to 1.
 pub type Albedo = [u16; 3];
 
+/// The reflectance of two surfaces, one after the other; within a unit, low, and white changes nothing.
+#[inline]
+#[must_use]
+pub fn product(a: &Albedo, b: &Albedo) -> Albedo {
+    let channel = |a: u16, b: u16| ((u32::from(a) * (u32::from(b) + u32::from(b >> 15))) >> 16) as u16;
+    [channel(a[0], b[0]), channel(a[1], b[1]), channel(a[2], b[2])]
+}
+
 /// What shading needs of a colour. The integer spaces share [`Rgb16`]; a float space brings its own.
 pub trait Colour: Copy + Default + core::fmt::Debug {
     /// The cosine of an angle of incidence, in [0, 1].
@@ -62,6 +70,10 @@ pub trait Colour: Copy + Default + core::fmt::Debug {
     fn plus(self, other: Self) -> Self;
     /// What a surface of this reflectance gives back.
     fn reflected(self, albedo: &Albedo) -> Self;
+    /// Twice the light so many times over, saturating. At most 15 times.
+    fn doubled(self, times: u32) -> Self;
+    /// A share of light as an [`Albedo`]'s channel.
+    fn share(part: Self::Cosine) -> u16;
     /// The pixel: clamped to 1, rounded to nearest.
     fn encode(self, transfer: Transfer) -> Rgb888;
 }
@@ -113,6 +125,17 @@ impl Colour for Rgb16 {
         Self([channel(r, kr), channel(g, kg), channel(b, kb)])
     }
 
+    #[inline]
+    fn doubled(self, times: u32) -> Self {
+        let times = times.min(15);
+        Self(self.0.map(|light| U16F16::from_bits(light.to_bits().min(u32::MAX >> times) << times)))
+    }
+
+    #[inline]
+    fn share(part: U16F16) -> u16 {
+        part.to_bits().min(0xffff) as u16
+    }
+
     fn encode(self, transfer: Transfer) -> Rgb888 {
         self.0.map(|light| {
             let light_q16 = light.to_bits().min(1 << 16);
@@ -154,6 +177,19 @@ mod tests {
                 assert!(got <= exact && exact - got <= 1, "{light:#x} {albedo:#x}: {got} {exact}");
             }
         }
+    }
+
+    #[test]
+    fn doubling_saturates_and_products_keep_white() {
+        assert_eq!(gray(3).doubled(0), gray(3));
+        assert_eq!(gray(3).doubled(15), gray(3 << 15));
+        assert_eq!(gray(1 << 17).doubled(14), gray(1 << 31));
+        assert_eq!(gray(1 << 18).doubled(14), gray((u32::MAX >> 14) << 14));
+        for albedo in [0, 1, 0x8000, 0xffff] {
+            assert_eq!(product(&[albedo; 3], &[0xffff; 3]), [albedo; 3]);
+            assert_eq!(product(&[albedo; 3], &[0; 3]), [0; 3]);
+        }
+        assert_eq!((Rgb16::share(U16F16::ONE), Rgb16::share(U16F16::ZERO)), (0xffff, 0));
     }
 
     #[test]

@@ -83,6 +83,8 @@ pub struct Surface<S: Space> {
     pub point: S::Point,
     /// The geometric normal, on the side that the ray came from.
     pub normal: S::Unit,
+    /// Whether that is the front, from where the vertices run counter-clockwise.
+    pub front: bool,
     /// The weight of the second vertex.
     pub u: S::Fraction,
     /// The weight of the third vertex.
@@ -186,6 +188,8 @@ pub trait Kernel: Copy + Debug + Default + Send + Sync + 'static {
     fn order(a: &Self::Depth, b: &Self::Depth) -> Ordering;
     /// Whether a box that is entered at `entry` may hold something not beyond `limit`.
     fn within(entry: Self::Distance, limit: Self::Distance) -> bool;
+    /// The direction of a ray, with length 1.
+    fn heading(ray: &Self::Ray) -> <Self::Space as Space>::Unit;
     /// The point, the normal and the barycentrics of a hit. The triangle must be hit by the ray.
     fn resolve(ray: &Self::Ray, triangle: &Self::Triangle) -> Surface<Self::Space>;
 }

@@ -38,3 +38,4 @@ mod shade;
 pub mod space;
 mod srgb;
 pub mod stats;
+pub mod whitted;

@@ -34,11 +34,19 @@ pub enum Need {
     WideIds = 1 << 8,
     /// More than 2^16 - 1 normals.
     WideNormals = 1 << 9,
+    /// Highlights after Blinn.
+    BlinnPhong = 1 << 10,
+    /// Highlights after Phong.
+    Phong = 1 << 11,
+    /// Mirror images.
+    Reflection = 1 << 12,
+    /// Light that passes a surface.
+    Refraction = 1 << 13,
 }
 
 impl Need {
     /// All of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 14] = [
         Self::PointLight,
         Self::DirectionalLight,
         Self::Shadows,
@@ -49,6 +57,10 @@ impl Need {
         Self::Linear,
         Self::WideIds,
         Self::WideNormals,
+        Self::BlinnPhong,
+        Self::Phong,
+        Self::Reflection,
+        Self::Refraction,
     ];
 }
 
@@ -65,6 +77,10 @@ impl Display for Need {
             Self::Linear => "linear output",
             Self::WideIds => "wide triangle ids",
             Self::WideNormals => "wide normal indices",
+            Self::BlinnPhong => "Blinn-Phong highlights",
+            Self::Phong => "Phong highlights",
+            Self::Reflection => "reflection",
+            Self::Refraction => "refraction",
         })
     }
 }
@@ -113,6 +129,18 @@ impl Needs {
     #[must_use]
     pub fn first_missing_in(self, other: Self) -> Option<Need> {
         Need::ALL.into_iter().find(|&need| self.has(need) && !other.has(need))
+    }
+
+    /// Whether surfaces have highlights.
+    #[must_use]
+    pub const fn highlights(self) -> bool {
+        self.has(Need::BlinnPhong) || self.has(Need::Phong)
+    }
+
+    /// Whether rays go on from surfaces.
+    #[must_use]
+    pub const fn branches(self) -> bool {
+        self.has(Need::Reflection) || self.has(Need::Refraction)
     }
 
     /// The needs of the set.

@@ -18,7 +18,7 @@ impl<T> Record for T where
 {
 }
 
-/// A Lambert surface.
+/// A surface, with Lambert's law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(C)]
 pub struct Material {
@@ -26,8 +26,45 @@ pub struct Material {
     pub emission: Radiance,
     /// What it gives back.
     pub albedo: Albedo,
+    /// Its lustre's number and 1; 0 for a matt surface.
+    pub lustre: u16,
+}
+
+/// What a surface does with light beyond Lambert's law.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
+#[repr(C)]
+pub struct Lustre {
+    /// The index of refraction outside by that inside, and the inverse, in Q28: for entering, and for leaving.
+    pub eta_q28: [u32; 2],
+    /// The colour of highlights, up to a power of two.
+    pub specular: Albedo,
+    /// What is seen of the mirror image.
+    pub reflected: Albedo,
+    /// What is seen of what is behind.
+    pub refracted: Albedo,
+    /// How sharp highlights are, Q2.
+    pub exponent_q2: u16,
+    /// Highlights are twice as strong so many times over, at most 15.
+    pub gain: u16,
+    /// [`Lustre::PHONG`] and [`Lustre::FRESNEL`].
+    pub flags: u16,
+    /// Schlick's reflectance at a right angle; 65535 is 1.
+    pub r0: u16,
     /// Zero.
     pub reserved: u16,
+}
+
+impl Lustre {
+    /// Highlights by Phong's law, and not by Blinn's.
+    pub const PHONG: u16 = 1;
+    /// Reflection and refraction share the light by Schlick's law, on top of their colours.
+    pub const FRESNEL: u16 = 1 << 1;
+
+    /// Whether there are no highlights.
+    #[must_use]
+    pub fn specular_is_black(&self) -> bool {
+        self.specular == [0; 3]
+    }
 }
 
 /// A light without extent.

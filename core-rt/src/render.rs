@@ -8,8 +8,8 @@ use crate::colour::{Colour, Rgb888};
 use crate::kernel::Kernel;
 use crate::profile::{Need, Profile};
 use crate::scene::Scene;
-use crate::shade::radiance;
 use crate::stats::{RayKind, Stats};
+use crate::whitted::{Branches, radiance};
 
 /// A rectangle of a picture, pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,6 +67,8 @@ pub trait Sink {
 pub struct Workspace<'a, K: Kernel> {
     /// At least as deep as the scene's tree.
     pub stack: &'a mut Stack<K>,
+    /// At least one more than the scene's `max_depth`; none where no ray goes on from a surface.
+    pub branches: &'a mut Branches<K>,
     /// At least one entry a pixel of the largest tile.
     pub hits: &'a mut [u32],
     /// At least one entry a pixel of the largest tile.
@@ -81,6 +83,13 @@ pub enum RenderError<E> {
         /// Its capacity.
         capacity: usize,
         /// The levels of the tree.
+        needed: usize,
+    },
+    /// There is room for fewer waiting rays than a pixel may have.
+    Branches {
+        /// Its capacity.
+        capacity: usize,
+        /// How many may wait.
         needed: usize,
     },
     /// The buffers hold fewer pixels than a tile.
@@ -99,6 +108,9 @@ impl<E: core::fmt::Display> core::fmt::Display for RenderError<E> {
         match self {
             Self::Stack { capacity, needed } => {
                 write!(f, "the traversal stack holds {capacity} entries, and this scene needs {needed}")
+            }
+            Self::Branches { capacity, needed } => {
+                write!(f, "{capacity} rays may wait, and this scene needs room for {needed}")
             }
             Self::Tile { capacity, needed } => {
                 write!(f, "the tile buffers hold {capacity} pixels, and the tile has {needed}")
@@ -119,9 +131,13 @@ pub fn render_tile<'w, P: Profile>(
     stats: &mut impl Stats,
 ) -> Result<&'w [Rgb888], RenderError<core::convert::Infallible>> {
     let needed = usize::from(scene.header.depth);
-    let stack = &mut *workspace.stack;
+    let (stack, branches) = (&mut *workspace.stack, &mut *workspace.branches);
     if stack.capacity() < needed {
         return Err(RenderError::Stack { capacity: stack.capacity(), needed });
+    }
+    let needed = scene.branches();
+    if branches.capacity() < needed {
+        return Err(RenderError::Branches { capacity: branches.capacity(), needed });
     }
     let count = tile.pixels();
     let capacity = workspace.hits.len().min(workspace.pixels.len());
@@ -138,7 +154,7 @@ pub fn render_tile<'w, P: Profile>(
     for ((pixel, &hit), ray) in pixels.iter_mut().zip(&*hits).zip(tile_rays(scene, tile)) {
         stats.ray(RayKind::Primary);
         let seen = match ray {
-            Some(ray) => radiance(scene, &ray, hit, stack, stats),
+            Some(ray) => radiance(scene, &ray, hit, stack, branches, stats),
             None => Colour::constant(&scene.header.background),
         };
         *pixel = seen.encode(transfer);
@@ -167,6 +183,7 @@ pub fn render<P: Profile, S: Sink>(
     for tile in Tile::of(scene.header.size, tile) {
         let pixels = render_tile(scene, tile, workspace, stats).map_err(|error| match error {
             RenderError::Stack { capacity, needed } => RenderError::Stack { capacity, needed },
+            RenderError::Branches { capacity, needed } => RenderError::Branches { capacity, needed },
             RenderError::Tile { capacity, needed } => RenderError::Tile { capacity, needed },
             RenderError::Sink(never) => match never {},
         })?;

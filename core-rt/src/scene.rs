@@ -5,12 +5,15 @@ use crate::bvh::Bvh;
 use crate::camera::Camera;
 use crate::kernel::Kernel;
 use crate::profile::{Need, Profile};
-use crate::record::{Light, Material};
+use crate::record::{Light, Lustre, Material};
 use crate::section::{Integers, Reader};
 use crate::space::Space;
 
 /// No tree is deeper; the host's builder keeps to it.
 pub const MAX_DEPTH: usize = 64;
+
+/// No ray goes on from more surfaces.
+pub const MAX_BRANCHES: usize = 64;
 
 /// What shading reads.
 #[derive(Clone, Copy, Debug)]
@@ -21,6 +24,8 @@ pub struct Shading<'a, K: Kernel> {
     pub normals: &'a [<K::Space as Space>::Normal],
     /// Materials.
     pub materials: &'a [Material],
+    /// What is more than matt of them.
+    pub lustres: &'a [Lustre],
     /// Lights.
     pub lights: &'a [Light],
 }
@@ -70,7 +75,10 @@ impl<'a, P: Profile> Scene<'a, P> {
     pub fn new_checked(bytes: &'a [u8]) -> Result<Self, BlobError> {
         let (header, sections) = open(bytes, P::Kernel::ID)?;
         // A need that this version does not know cannot be met, nor named.
-        if !header.needs.is_known() || usize::from(header.depth) > MAX_DEPTH {
+        if !header.needs.is_known()
+            || usize::from(header.depth) > MAX_DEPTH
+            || usize::from(header.max_depth) > MAX_BRANCHES
+        {
             return Err(BlobError::Header);
         }
         if let Some(need) = header.needs.first_missing_in(P::NEEDS) {
@@ -81,6 +89,14 @@ impl<'a, P: Profile> Scene<'a, P> {
         let (bvh, shading) = view(&header, sections).ok_or(BlobError::Sections)?;
         check(&header, settings, &bvh, &shading)?;
         Ok(Self { header, settings, camera, bvh, shading })
+    }
+}
+
+impl<P: Profile> Scene<'_, P> {
+    /// The rays that may wait while a pixel is drawn.
+    #[must_use]
+    pub fn branches(&self) -> usize {
+        if self.header.needs.branches() { usize::from(self.header.max_depth) + 1 } else { 0 }
     }
 }
 
@@ -113,6 +129,7 @@ fn view<'a, K: Kernel>(header: &Header, sections: &'a [u8]) -> Option<(Bvh<'a, K
         normal_indices: reader.integers(counts.smooth.checked_mul(3)?, header.needs.has(Need::WideNormals))?,
         normals: reader.records(counts.normals)?,
         materials: reader.records(counts.materials)?,
+        lustres: reader.records(counts.lustres)?,
         lights: reader.records(counts.lights)?,
     };
     reader.bytes.is_empty().then_some((bvh, shading))

@@ -1,7 +1,10 @@
-//! Lambert's law with hard shadows: the radiance that a surface sends towards the ray that hit it.
+//! The light that a surface sends of its own and of the lights: Lambert's law, highlights, hard shadows.
 //!
-//! `emission + albedo (ambient + sum of visible lights' radiance * cos)`. No 1 / pi and no falloff: a light of radiance 1
-//! that shines straight down on a white surface makes it white.
+//! `emission + albedo (ambient + sum of visible lights' radiance * cos) + specular * sum of radiance * lobe`. No 1 / pi and
+//! no falloff: a light of radiance 1 that shines straight down on a white surface makes it white. A lobe is the cosine
+//! between the normal and the direction half way to the light (Blinn, "Models of Light Reflection for Computer Synthesized
+//! Pictures", 1977), or between the mirrored view and the light (Phong, "Illumination for Computer Generated Pictures",
+//! 1975), to the material's exponent.
 //!
 //! The shading normal is brought to the geometric normal's side, and that one to the viewer's. A light behind either
 //! gives nothing.
@@ -10,51 +13,82 @@ use crate::bvh::{Intersect, Stack};
 use crate::colour::Colour;
 use crate::kernel::{Kernel, NONE, Surface};
 use crate::profile::{Need, Profile};
-use crate::record::Light;
+use crate::record::{Light, Lustre, Material};
 use crate::scene::Scene;
-use crate::space::Space;
+use crate::space::{Scalar, Space};
 use crate::stats::{RayKind, Stats};
 
-type SpaceOf<P> = <<P as Profile>::Kernel as Kernel>::Space;
-type ColourOf<P> = <SpaceOf<P> as Space>::Colour;
-type RayOf<P> = <<P as Profile>::Kernel as Kernel>::Ray;
+pub(crate) type SpaceOf<P> = <<P as Profile>::Kernel as Kernel>::Space;
+type UnitOf<P> = <SpaceOf<P> as Space>::Unit;
+/// The direction to a light, and the cosine.
+type Lit<P> = (UnitOf<P>, Scalar<SpaceOf<P>>);
+pub(crate) type ColourOf<P> = <SpaceOf<P> as Space>::Colour;
+pub(crate) type RayOf<P> = <<P as Profile>::Kernel as Kernel>::Ray;
 
-/// What a ray sees whose nearest hit is known.
-pub(crate) fn radiance<P: Profile>(
-    scene: &Scene<'_, P>,
+/// A surface with the light that it sends, and what rays go on by.
+#[derive(Debug)]
+pub(crate) struct Shaded<'a, P: Profile> {
+    pub(crate) surface: Surface<SpaceOf<P>>,
+    /// The shading normal.
+    pub(crate) normal: UnitOf<P>,
+    /// `None` for a matt surface.
+    pub(crate) lustre: Option<&'a Lustre>,
+    pub(crate) colour: ColourOf<P>,
+}
+
+/// The surface that a ray hits, shaded; `None` for a miss.
+pub(crate) fn shade<'a, P: Profile>(
+    scene: &Scene<'a, P>,
     ray: &RayOf<P>,
     hit: u32,
     stack: &mut Stack<P::Kernel>,
     stats: &mut impl Stats,
-) -> ColourOf<P> {
-    let Some((triangle, material)) = scene.surface(hit) else {
-        return Colour::constant(&scene.header.background);
-    };
+) -> Option<Shaded<'a, P>> {
+    let (triangle, material) = scene.surface(hit)?;
+    let lustre = scene.lustre(material);
     let surface = P::Kernel::resolve(ray, triangle);
     let normal = shading_normal(scene, hit, &surface);
+    let shine = lustre.filter(|lustre| P::NEEDS.highlights() && !lustre.specular_is_black());
+    let along = shine.map(|_| P::Kernel::heading(ray));
     let mut arriving = ColourOf::<P>::default();
+    let mut shining = ColourOf::<P>::default();
     if P::NEEDS.has(Need::Ambient) {
         arriving = Colour::constant(&scene.header.ambient);
     }
     for light in scene.shading.lights {
-        if let Some(lit) = direct(scene, &surface, normal, light, hit, stack, stats) {
-            arriving = arriving.plus(lit);
+        let Some((towards, cosine)) = direct(scene, &surface, normal, light, hit, stack, stats) else { continue };
+        arriving = arriving.plus(Colour::lit(&light.radiance, cosine));
+        if let Some((lustre, along)) = shine.zip(along) {
+            let lobe = lobe::<P>(lustre, along, normal, towards);
+            shining = shining.plus(Colour::lit(&light.radiance, lobe));
         }
     }
-    let leaving = arriving.reflected(&material.albedo);
-    if P::NEEDS.has(Need::Emission) && !material.emission.is_black() {
-        leaving.plus(Colour::constant(&material.emission))
-    } else {
-        leaving
+    let mut colour = arriving.reflected(&material.albedo);
+    if let Some(lustre) = shine {
+        colour = colour.plus(shining.reflected(&lustre.specular).doubled(lustre.gain.into()));
     }
+    if P::NEEDS.has(Need::Emission) && !material.emission.is_black() {
+        colour = colour.plus(Colour::constant(&material.emission));
+    }
+    Some(Shaded { surface, normal, lustre, colour })
+}
+
+/// How much of a light is seen in a highlight.
+fn lobe<P: Profile>(lustre: &Lustre, along: UnitOf<P>, normal: UnitOf<P>, towards: UnitOf<P>) -> Scalar<SpaceOf<P>> {
+    let needs = P::NEEDS;
+    let phong = needs.has(Need::Phong) && (!needs.has(Need::BlinnPhong) || lustre.flags & Lustre::PHONG != 0);
+    let (a, b) = if phong {
+        (SpaceOf::<P>::reflect(along, normal), towards)
+    } else {
+        // Opposite directions have no half way; then the light is behind.
+        let view = SpaceOf::<P>::negate(along);
+        (SpaceOf::<P>::halfway(towards, view).unwrap_or(view), normal)
+    };
+    SpaceOf::<P>::lobe(a, b, lustre.exponent_q2)
 }
 
 /// The interpolated normal on the geometric normal's side, or that one for a flat triangle.
-fn shading_normal<P: Profile>(
-    scene: &Scene<'_, P>,
-    hit: u32,
-    surface: &Surface<SpaceOf<P>>,
-) -> <SpaceOf<P> as Space>::Unit {
+fn shading_normal<P: Profile>(scene: &Scene<'_, P>, hit: u32, surface: &Surface<SpaceOf<P>>) -> UnitOf<P> {
     if !P::NEEDS.has(Need::SmoothNormals) {
         return surface.normal;
     }
@@ -69,16 +103,16 @@ fn shading_normal<P: Profile>(
     }
 }
 
-/// What one light adds, if it is in front of the surface and nothing is between.
+/// The direction to a light and the cosine there, if it is in front of the surface and nothing is between.
 fn direct<P: Profile>(
     scene: &Scene<'_, P>,
     surface: &Surface<SpaceOf<P>>,
-    normal: <SpaceOf<P> as Space>::Unit,
+    normal: UnitOf<P>,
     light: &Light,
     hit: u32,
     stack: &mut Stack<P::Kernel>,
     stats: &mut impl Stats,
-) -> Option<ColourOf<P>> {
+) -> Option<Lit<P>> {
     let point_light =
         P::NEEDS.has(Need::PointLight) && (!P::NEEDS.has(Need::DirectionalLight) || light.kind == Light::POINT);
     let towards = if point_light {
@@ -99,17 +133,26 @@ fn direct<P: Profile>(
             return None;
         }
     }
-    Some(Colour::lit(&light.radiance, cosine))
+    Some((towards, cosine))
 }
 
-impl<P: Profile> Scene<'_, P> {
+impl<'a, P: Profile> Scene<'a, P> {
     /// The triangle and the material of a hit; `None` for a miss.
     #[inline]
-    fn surface(&self, hit: u32) -> Option<(&<P::Kernel as Kernel>::Triangle, &crate::record::Material)> {
+    fn surface(&self, hit: u32) -> Option<(&'a <P::Kernel as Kernel>::Triangle, &'a Material)> {
         if hit == NONE {
             return None;
         }
         let triangle = self.bvh.triangles.get(hit as usize)?;
         Some((triangle, self.shading.materials.get(P::Kernel::material(triangle) as usize)?))
+    }
+
+    /// What a material is more than matt.
+    #[inline]
+    fn lustre(&self, material: &Material) -> Option<&'a Lustre> {
+        if !P::NEEDS.highlights() && !P::NEEDS.branches() {
+            return None;
+        }
+        self.shading.lustres.get(usize::from(material.lustre).wrapping_sub(1))
     }
 }

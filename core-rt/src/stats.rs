@@ -7,6 +7,10 @@ pub enum RayKind {
     Primary,
     /// From a surface to a light.
     Shadow,
+    /// The mirror image in a surface.
+    Reflection,
+    /// Through a surface.
+    Refraction,
 }
 
 /// What is told of the work as it is done.
@@ -43,6 +47,10 @@ pub struct Counts {
     pub primary_rays: u64,
     /// Shadow rays.
     pub shadow_rays: u64,
+    /// Mirrored rays.
+    pub reflection_rays: u64,
+    /// Rays through surfaces.
+    pub refraction_rays: u64,
 }
 
 impl Counts {
@@ -54,13 +62,15 @@ impl Counts {
             triangle_tests: self.triangle_tests + other.triangle_tests,
             primary_rays: self.primary_rays + other.primary_rays,
             shadow_rays: self.shadow_rays + other.shadow_rays,
+            reflection_rays: self.reflection_rays + other.reflection_rays,
+            refraction_rays: self.refraction_rays + other.refraction_rays,
         }
     }
 
     /// All rays.
     #[must_use]
     pub fn rays(&self) -> u64 {
-        self.primary_rays + self.shadow_rays
+        self.primary_rays + self.shadow_rays + self.reflection_rays + self.refraction_rays
     }
 }
 
@@ -78,6 +88,8 @@ impl Stats for Counts {
         match kind {
             RayKind::Primary => self.primary_rays += 1,
             RayKind::Shadow => self.shadow_rays += 1,
+            RayKind::Reflection => self.reflection_rays += 1,
+            RayKind::Refraction => self.refraction_rays += 1,
         }
     }
 }

@@ -34,6 +34,8 @@ pub struct Traits {
     pub needs: u32,
     /// Levels of a tree, a multiple of 16, so that scenes share firmware.
     pub depth: usize,
+    /// Rays of a pixel that may wait: none, or a multiple of 4.
+    pub branches: usize,
 }
 
 impl Traits {
@@ -51,7 +53,11 @@ impl Traits {
     #[must_use]
     pub fn new(kernel: u16, header: &Header) -> Self {
         let depth = usize::from(header.depth).next_multiple_of(16).max(16);
-        Self { kernel, needs: header.needs.bits(), depth }
+        let branches = match header.needs.branches() {
+            true => (usize::from(header.max_depth) + 1).next_multiple_of(4),
+            false => 0,
+        };
+        Self { kernel, needs: header.needs.bits(), depth, branches }
     }
 
     /// The kernel's type as a path in Rust; `None` where no firmware has it.
@@ -144,7 +150,7 @@ fn firmware(
     count: bool,
     embedded: Option<(&Path, usize)>,
 ) -> String {
-    let Traits { needs, depth, .. } = traits;
+    let Traits { needs, depth, branches, .. } = traits;
     let blob = embedded.map_or_else(String::new, |(path, length)| {
         format!(
             "#[used]\n#[unsafe(link_section = \".blob\")]\nstatic BLOB: [u8; {length}] = *include_bytes!({:?});\n",
@@ -164,7 +170,7 @@ fn firmware(
          impl Firmware for This {{\n    type Profile = Self;\n    const BOARD: &'static Board = &board::{board};\n    \
          const DRAW: Draw = {draw};\n    const COUNT: bool = {count};\n}}\n\
          \n\
-         static mut STORAGE: Storage<{kernel}, {depth}> = Storage::new();\n\
+         static mut STORAGE: Storage<{kernel}, {depth}, {branches}> = Storage::new();\n\
          {blob}"
     )
 }

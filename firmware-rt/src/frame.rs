@@ -65,6 +65,10 @@ pub struct Report {
     pub primary_rays: u64,
     /// Shadow rays.
     pub shadow_rays: u64,
+    /// Mirrored rays.
+    pub reflection_rays: u64,
+    /// Rays through surfaces.
+    pub refraction_rays: u64,
     /// Ray-box tests.
     pub box_tests: u64,
     /// Ray-triangle tests.

@@ -48,5 +48,9 @@ fn name(need: Need) -> defmt::Str {
         Need::Linear => defmt::intern!("linear output"),
         Need::WideIds => defmt::intern!("wide triangle ids"),
         Need::WideNormals => defmt::intern!("wide normal indices"),
+        Need::BlinnPhong => defmt::intern!("Blinn-Phong highlights"),
+        Need::Phong => defmt::intern!("Phong highlights"),
+        Need::Reflection => defmt::intern!("reflection"),
+        Need::Refraction => defmt::intern!("refraction"),
     }
 }

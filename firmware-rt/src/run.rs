@@ -8,6 +8,7 @@ use core_rt::profile::Profile;
 use core_rt::render::{Tile, Workspace, render_tile};
 use core_rt::scene::Scene;
 use core_rt::stats::{Counts, NoStats, Stats};
+use core_rt::whitted::Branch;
 use zerocopy::{FromBytes, IntoBytes};
 
 use crate::board::{Board, Region};
@@ -44,32 +45,40 @@ pub trait Firmware {
     const COUNT: bool;
 }
 
-/// All that rendering stores, for trees of at most `DEPTH` levels.
+/// All that rendering stores, for trees of at most `DEPTH` levels and pixels of which `BRANCHES` rays may wait.
 #[derive(Debug)]
-pub struct Storage<K: Kernel, const DEPTH: usize> {
+pub struct Storage<K: Kernel, const DEPTH: usize, const BRANCHES: usize> {
     stack: heapless::Vec<Waiting<K>, DEPTH>,
+    branches: heapless::Vec<Branch<K>, BRANCHES>,
     hits: [u32; PIXELS],
     pixels: [Rgb888; PIXELS],
 }
 
-impl<K: Kernel, const DEPTH: usize> Storage<K, DEPTH> {
+impl<K: Kernel, const DEPTH: usize, const BRANCHES: usize> Storage<K, DEPTH, BRANCHES> {
     /// Nothing yet.
     #[must_use]
     pub const fn new() -> Self {
-        Self { stack: heapless::Vec::new(), hits: [0; PIXELS], pixels: [[0; 3]; PIXELS] }
+        Self {
+            stack: heapless::Vec::new(),
+            branches: heapless::Vec::new(),
+            hits: [0; PIXELS],
+            pixels: [[0; 3]; PIXELS],
+        }
     }
 }
 
-impl<K: Kernel, const DEPTH: usize> Default for Storage<K, DEPTH> {
+impl<K: Kernel, const DEPTH: usize, const BRANCHES: usize> Default for Storage<K, DEPTH, BRANCHES> {
     fn default() -> Self {
         Self::new()
     }
 }
 
 /// Renders the blob in its place; the status to end with. The stack was painted.
-pub fn run<F: Firmware, const DEPTH: usize>(storage: &mut Storage<<F::Profile as Profile>::Kernel, DEPTH>) -> Status {
-    let Storage { stack, hits, pixels } = storage;
-    let mut workspace = Workspace { stack, hits, pixels };
+pub fn run<F: Firmware, const DEPTH: usize, const BRANCHES: usize>(
+    storage: &mut Storage<<F::Profile as Profile>::Kernel, DEPTH, BRANCHES>,
+) -> Status {
+    let Storage { stack, branches, hits, pixels } = storage;
+    let mut workspace = Workspace { stack, branches, hits, pixels };
     if F::COUNT {
         let mut counts = Counts::default();
         rendered::<F, _>(&mut workspace, &mut counts, |counts| *counts)
@@ -100,6 +109,15 @@ fn rendered<F: Firmware, S: Stats>(
     let capacity = workspace.stack.capacity();
     if capacity < usize::from(scene.header.depth) {
         defmt::error!("the tree has {=u8} levels, and this firmware is for {=usize}", scene.header.depth, capacity);
+        return Status::Storage;
+    }
+    let room = workspace.branches.capacity();
+    if room < scene.branches() {
+        defmt::error!(
+            "{=usize} rays of a pixel may wait, and this firmware has room for {=usize}",
+            scene.branches(),
+            room
+        );
         return Status::Storage;
     }
     match link.open().and_then(|wire| drawn::<F, S>(scene, wire, workspace, stats, counts)) {
@@ -140,6 +158,8 @@ fn drawn<F: Firmware, S: Stats>(
         counted: F::COUNT.into(),
         primary_rays: counts.primary_rays,
         shadow_rays: counts.shadow_rays,
+        reflection_rays: counts.reflection_rays,
+        refraction_rays: counts.refraction_rays,
         box_tests: counts.box_tests,
         triangle_tests: counts.triangle_tests,
     };

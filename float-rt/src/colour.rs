@@ -39,6 +39,16 @@ impl<F: Real> Colour for RgbF<F> {
         Self([channel(r, kr), channel(g, kg), channel(b, kb)])
     }
 
+    #[inline]
+    fn doubled(self, times: u32) -> Self {
+        Self(self.0.map(|light| light.ldexp(times.min(15) as i32)))
+    }
+
+    #[inline]
+    fn share(part: F) -> u16 {
+        (part * F::from_i32(65_535) + F::ONE.ldexp(-1)).to_i32().clamp(0, 65_535) as u16
+    }
+
     fn encode(self, transfer: Transfer) -> Rgb888 {
         let half = F::ONE.ldexp(-1);
         self.0.map(|light| {

@@ -140,17 +140,22 @@ impl<F: Format> Kernel for Float<F> {
         entry <= limit
     }
 
+    #[inline]
+    fn heading(ray: &Ray<F>) -> Triple<F> {
+        normalise(ray.direction).unwrap_or([F::ZERO, F::ZERO, F::ONE])
+    }
+
     fn resolve(ray: &Ray<F>, triangle: &F::Triangle) -> Surface<FloatSpace<F>> {
         let [v0, e1, e2] = *triangle.rows();
         // The traversal found the hit by the same operations, so it is there.
         let hit = triangle::hit(ray, triangle).unwrap_or_default();
-        let normal = match normalise(cross(e1, e2)) {
-            Some(normal) if dot(normal, ray.direction) > F::ZERO => normal.map(|c| -c),
-            Some(normal) => normal,
+        let (normal, front) = match normalise(cross(e1, e2)) {
+            Some(normal) if dot(normal, ray.direction) > F::ZERO => (normal.map(|c| -c), false),
+            Some(normal) => (normal, true),
             // Of a sliver whose area is lost by rounding nothing is known but that it is seen.
-            None => normalise(ray.direction.map(|c| -c)).unwrap_or([F::ZERO, F::ZERO, F::ONE]),
+            None => (Self::heading(ray).map(|c| -c), true),
         };
-        Surface { point: add(v0, add(scale(e1, hit.u), scale(e2, hit.v))), normal, u: hit.u, v: hit.v }
+        Surface { point: add(v0, add(scale(e1, hit.u), scale(e2, hit.v))), normal, front, u: hit.u, v: hit.v }
     }
 }
 

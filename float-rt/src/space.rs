@@ -73,6 +73,40 @@ impl<F: Real> Space for FloatSpace<F> {
         // Unit vectors are units but for rounding.
         (cosine > F::ZERO).then_some(if cosine < F::ONE { cosine } else { F::ONE })
     }
+
+    #[inline]
+    fn reflect(along: Triple<F>, normal: Triple<F>) -> Triple<F> {
+        let twice = dot(along, normal).ldexp(1);
+        sub(along, scale(normal, twice))
+    }
+
+    #[inline]
+    fn refract(along: Triple<F>, normal: Triple<F>, eta_q28: u32) -> Option<(Triple<F>, F)> {
+        let eta = F::from_i64(eta_q28.into()).ldexp(-28);
+        let cosine = -dot(along, normal);
+        let square = F::ONE - eta * eta * (F::ONE - cosine * cosine);
+        if square < F::ZERO {
+            return None;
+        }
+        let behind = square.sqrt();
+        Some((add(scale(along, eta), scale(normal, eta * cosine - behind)), behind))
+    }
+
+    #[inline]
+    fn halfway(a: Triple<F>, b: Triple<F>) -> Option<Triple<F>> {
+        normalise(add(a, b))
+    }
+
+    fn lobe(a: Triple<F>, b: Triple<F>, exponent_q2: u16) -> F {
+        Self::cosine(a, b).map_or(F::ZERO, |cosine| cosine.pow(F::from_i32(exponent_q2.into()).ldexp(-2)))
+    }
+
+    #[inline]
+    fn fresnel(cosine: F, r0: u16) -> F {
+        let (x, r0) = (F::ONE - cosine, F::from_i32(r0.into()) / F::from_i32(65_535));
+        let square = x * x;
+        r0 + (F::ONE - r0) * (square * square * x)
+    }
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use core_rt::colour::Rgb888;
 use core_rt::kernel::Kernel;
 use core_rt::profile::Profile;
 use core_rt::render::{Tile, Workspace, render_tile};
-use core_rt::scene::{MAX_DEPTH, Scene};
+use core_rt::scene::{MAX_BRANCHES, MAX_DEPTH, Scene};
 use core_rt::stats::Counts;
 use rayon::prelude::*;
 
@@ -52,7 +52,8 @@ fn one_tile<P: Profile>(scene: &Scene<'_, P>, tile: Tile) -> (Vec<Rgb888>, Count
     let mut hits = vec![0; tile.pixels()];
     let mut pixels = vec![[0; 3]; tile.pixels()];
     let mut counts = Counts::default();
-    let mut workspace = Workspace { stack: &mut stack, hits: &mut hits, pixels: &mut pixels };
+    let mut branches = heapless::Vec::<_, { MAX_BRANCHES + 1 }>::new();
+    let mut workspace = Workspace { stack: &mut stack, branches: &mut branches, hits: &mut hits, pixels: &mut pixels };
     // The workspace is as large as any scene asks for: there is no error left.
     let rendered = render_tile(scene, tile, &mut workspace, &mut counts);
     debug_assert!(rendered.is_ok());

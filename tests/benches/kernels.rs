@@ -18,7 +18,7 @@ use core_rt::hanika::{HanikaC, HanikaCd, HanikaCons};
 use core_rt::kernel::Kernel;
 use core_rt::profile::Full;
 use core_rt::render::{Tile, Workspace, render_tile};
-use core_rt::scene::{MAX_DEPTH, Scene};
+use core_rt::scene::{MAX_BRANCHES, MAX_DEPTH, Scene};
 use core_rt::stats::{Counts, NoStats, Stats};
 use float_rt::{Float32, Float64};
 use host_tools::model::Model;
@@ -88,7 +88,8 @@ fn draw<K: Kernel>(blob: &Blob, stats: &mut impl Stats) {
     let scene = Scene::<Full<K>>::new_checked(blob.bytes()).expect("a blob just made");
     let mut stack = heapless::Vec::<_, MAX_DEPTH>::new();
     let (mut hits, mut pixels) = ([0; 1024], [[0; 3]; 1024]);
-    let mut workspace = Workspace { stack: &mut stack, hits: &mut hits, pixels: &mut pixels };
+    let mut branches = heapless::Vec::<_, { MAX_BRANCHES + 1 }>::new();
+    let mut workspace = Workspace { stack: &mut stack, branches: &mut branches, hits: &mut hits, pixels: &mut pixels };
     intray_measured(|| {
         for tile in Tile::of(scene.header.size, [SIDE; 2]) {
             black_box(render_tile(&scene, tile, &mut workspace, stats).expect("the workspace has room"));

@@ -16,11 +16,12 @@ fn main() -> io::Result<()> {
     fs::write(out.join("profile.rs"), profile(kernel, &traits))
 }
 
-/// The Rust of a profile: its kernel, its needs, and the levels of its trees.
-fn profile(kernel: &str, Traits { needs, depth, .. }: &Traits) -> String {
+/// The Rust of a profile: its kernel, its needs, the levels of its trees, and the rays that may wait.
+fn profile(kernel: &str, Traits { needs, depth, branches, .. }: &Traits) -> String {
     format!(
         "type Kernel = {kernel};\n\
          const DEPTH: usize = {depth};\n\
+         const BRANCHES: usize = {branches};\n\
          \n\
          #[derive(Clone, Copy, Debug, Default)]\n\
          struct This;\n\

@@ -4,9 +4,9 @@ use core_rt::blob::{Header, MAGIC, PREFIX_SIZE, Prefix, TRAILER_SIZE, VERSION, c
 use core_rt::colour::Rgb888;
 use core_rt::kernel::{Kernel, Vertices};
 use core_rt::profile::{Full, Need};
-use core_rt::record::{Light, Material, Record};
+use core_rt::record::{Light, Lustre, Material, Record};
 use core_rt::render::{Tile, Workspace, render_tile};
-use core_rt::scene::{MAX_DEPTH, Scene};
+use core_rt::scene::{MAX_BRANCHES, MAX_DEPTH, Scene};
 use core_rt::space::Space;
 use core_rt::stats::Counts;
 use host_tools::import::{Embedded, load_from};
@@ -31,6 +31,8 @@ pub struct Draft<K: Kernel> {
     pub normals: Vec<<K::Space as Space>::Normal>,
     /// Materials.
     pub materials: Vec<Material>,
+    /// What is more than matt of them.
+    pub lustres: Vec<Lustre>,
     /// Lights.
     pub lights: Vec<Light>,
 }
@@ -58,6 +60,7 @@ impl<K: Kernel> Draft<K> {
             normal_indices: take_integers(&mut rest, counts.smooth.checked_mul(3)?, needs.has(Need::WideNormals))?,
             normals: take(&mut rest, counts.normals)?,
             materials: take(&mut rest, counts.materials)?,
+            lustres: take(&mut rest, counts.lustres)?,
             lights: take(&mut rest, counts.lights)?,
         })
     }
@@ -75,6 +78,7 @@ impl<K: Kernel> Draft<K> {
         put_integers(&mut bytes, &self.normal_indices, self.header.needs.has(Need::WideNormals));
         put(&mut bytes, &self.normals);
         put(&mut bytes, &self.materials);
+        put(&mut bytes, &self.lustres);
         put(&mut bytes, &self.lights);
         bytes.extend([0; TRAILER_SIZE]);
         repaired(&bytes, K::ID)
@@ -167,7 +171,9 @@ pub fn corners<K: Kernel>(scene: &Scene<'_, Full<K>>) -> Vec<Rgb888> {
     for tile in [first, last] {
         let mut stack = heapless::Vec::<_, MAX_DEPTH>::new();
         let (mut hits, mut pixels) = ([0; 64], [[0; 3]; 64]);
-        let mut workspace = Workspace { stack: &mut stack, hits: &mut hits, pixels: &mut pixels };
+        let mut branches = heapless::Vec::<_, { MAX_BRANCHES + 1 }>::new();
+        let mut workspace =
+            Workspace { stack: &mut stack, branches: &mut branches, hits: &mut hits, pixels: &mut pixels };
         let mut counts = Counts::default();
         seen.extend_from_slice(
             render_tile(scene, tile, &mut workspace, &mut counts).expect("the workspace is the largest there is"),

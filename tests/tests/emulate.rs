@@ -119,6 +119,8 @@ fn rays_and_tests_are_counted_as_on_the_host() {
             triangle_tests: report.triangle_tests,
             primary_rays: report.primary_rays,
             shadow_rays: report.shadow_rays,
+            reflection_rays: report.reflection_rays,
+            refraction_rays: report.refraction_rays,
         };
         assert_eq!((outcome.picture, found), (picture, counts), "{}", board.name);
         assert!(counts.shadow_rays > 0 && counts.primary_rays == 32 * 24);

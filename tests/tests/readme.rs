@@ -170,8 +170,8 @@ fn row(board: &'static Board, counter: &Counter, kernel: &str, blob: &[u8], host
     let outcome = run.perform(&mut Vec::new()).expect("it goes well");
     println!("{kernel} on {}: {:.1} s", board.name, begin.elapsed().as_secs_f64());
     assert!(outcome.picture == host.picture, "{kernel} on {}", board.name);
-    let Counts { primary_rays, shadow_rays, box_tests, triangle_tests } = host.counts;
-    let per_ray = |count: u64| count as f64 / (primary_rays + shadow_rays) as f64;
+    let Counts { box_tests, triangle_tests, .. } = host.counts;
+    let per_ray = |count: u64| count as f64 / host.counts.rays() as f64;
     let instructions = outcome.counts.expect("they were counted").instructions;
     let ram = elf.static_bytes + u64::from(outcome.report.stack_bytes);
     let row = format!(

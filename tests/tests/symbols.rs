@@ -25,7 +25,7 @@ use tests::symbols::{Category, Found, category, find};
 /// The boards that can be built for here.
 fn boards() -> impl Iterator<Item = &'static Board> {
     BOARDS.into_iter().filter(|board| {
-        let traits = Traits { kernel: Exact14::ID, needs: 0, depth: 16 };
+        let traits = Traits { kernel: Exact14::ID, needs: 0, depth: 16, branches: 0 };
         let checked = firmware::check(board, &traits);
         if let Err(error) = &checked {
             println!("skipped {}: {error}", board.name);

@@ -10,7 +10,7 @@ use crate::bvh::{Bvh, Child};
 use crate::colour::{Radiance, Transfer};
 use crate::kernel::{Bounds, Kernel};
 use crate::profile::{Need, Needs};
-use crate::record::{Light, Material};
+use crate::record::{Light, Lustre, Material};
 use crate::scene::{MAX_DEPTH, Shading};
 use crate::space::{Space, is_unit_q30};
 
@@ -41,9 +41,10 @@ pub(crate) fn check<K: Kernel>(
         .chain([&header.background, &header.ambient])
         .all(|radiance| Radiance::EXPONENTS.contains(&radiance.exponent));
     let lights = shading.lights.iter().all(light_is_valid);
-    let reserved = shading.materials.iter().all(|m: &Material| m.reserved == 0);
+    let lustres = shading.lustres.iter().all(lustre_is_valid)
+        && shading.materials.iter().all(|m: &Material| usize::from(m.lustre) <= shading.lustres.len());
     let normals = shading.normals.iter().all(K::Space::is_unit);
-    if !(in_range && lights && reserved && normals) {
+    if !(in_range && lights && lustres && normals) {
         return Err(BlobError::Shading);
     }
     match used(header, shading).first_missing_in(header.needs) {
@@ -71,6 +72,14 @@ fn origins<K: Kernel>(header: &Header, bvh: &Bvh<'_, K>, shading: &Shading<'_, K
     if all.all(|origin| whole.spanned_from(origin, K::SPAN)) { Ok(()) } else { Err(BlobError::Origin) }
 }
 
+/// What light is bent by must leave room in the products.
+fn lustre_is_valid(lustre: &Lustre) -> bool {
+    lustre.flags & !(Lustre::PHONG | Lustre::FRESNEL) == 0
+        && lustre.gain <= 15
+        && lustre.reserved == 0
+        && !lustre.eta_q28.contains(&0)
+}
+
 /// A light must be of a known kind.
 fn light_is_valid(light: &Light) -> bool {
     match light.kind {
@@ -92,6 +101,10 @@ fn used<K: Kernel>(header: &Header, shading: &Shading<'_, K>) -> Needs {
         .with(Need::Ambient, !header.ambient.is_black())
         .with(Need::Srgb, header.transfer == Transfer::Srgb)
         .with(Need::Linear, header.transfer == Transfer::Linear)
+        .with(Need::BlinnPhong, shading.lustres.iter().any(|l| !l.specular_is_black() && l.flags & Lustre::PHONG == 0))
+        .with(Need::Phong, shading.lustres.iter().any(|l| !l.specular_is_black() && l.flags & Lustre::PHONG != 0))
+        .with(Need::Reflection, header.max_depth > 0 && shading.lustres.iter().any(|l| l.reflected != [0; 3]))
+        .with(Need::Refraction, header.max_depth > 0 && shading.lustres.iter().any(|l| l.refracted != [0; 3]))
 }
 
 /// A node whose second child is still to be checked, and that child's level: a word for both, since nothing that a chip

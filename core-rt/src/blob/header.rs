@@ -53,6 +53,8 @@ pub struct Counts {
     pub normals: u32,
     /// Materials.
     pub materials: u32,
+    /// What is more than matt of them.
+    pub lustres: u32,
     /// Lights.
     pub lights: u32,
 }
@@ -81,6 +83,8 @@ pub struct Header {
     pub ambient: Radiance,
     /// How pixels are encoded.
     pub transfer: Transfer,
+    /// How often rays go on from surfaces: the branches that a pixel's tree may have waiting.
+    pub max_depth: u8,
     /// The root of the tree, packed.
     pub root: u32,
     /// The levels of nodes: the stack that a traversal needs.

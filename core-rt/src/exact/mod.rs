@@ -160,6 +160,12 @@ impl<W: Width> Kernel for Exact<W> {
         entry <= limit + W::SLACK
     }
 
+    #[inline]
+    fn heading(ray: &Ray<W>) -> <W::Space as Space>::Unit {
+        // Its largest component fills the format, so it is not zero.
+        W::normalise(ray.direction).unwrap_or_else(|| W::Space::unit_from_q30([0, 0, 1 << 30]))
+    }
+
     fn resolve(ray: &Ray<W>, triangle: &Self::Triangle) -> Surface<W::Space> {
         resolve::resolve(ray, triangle)
     }

@@ -22,6 +22,7 @@ pub(super) fn resolve<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short
         point: W::point(ray.origin, ray.direction, numerator, denominator),
         // A record's triangle has area, so its normal is not zero; the default is for a record that lies.
         normal: W::normalise(normal).unwrap_or_else(|| W::Space::unit_from_q30([0, 0, 1 << 30])),
+        front: facing,
         u: W::fraction(u, denominator),
         v: W::fraction(v, denominator),
     }

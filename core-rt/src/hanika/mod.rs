@@ -183,6 +183,12 @@ impl<V: Variant> Kernel for Hanika<V> {
         entry <= limit + V::Slab::SLACK // both at most about 2^30
     }
 
+    #[inline]
+    fn heading(ray: &Self::Ray) -> <GridQ31 as Space>::Unit {
+        // It has length 1 in Q31, and saturates there.
+        ray.direction.map(|c| FixedI32::from_bits(c.clamp(i32::MIN.into(), i32::MAX.into()) as i32))
+    }
+
     fn resolve(ray: &Self::Ray, triangle: &TriangleRecord) -> Surface<GridQ31> {
         resolve::resolve(ray, triangle)
     }

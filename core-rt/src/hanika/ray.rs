@@ -109,6 +109,7 @@ mod tests {
         let surface = |point: Triple<i64>, normal: [i32; 3]| Surface::<GridQ31> {
             point: point.map(|c| c << POINT_BITS),
             normal: normal.map(FixedI32::from_bits),
+            front: true,
             u: FixedI32::ZERO,
             v: FixedI32::ZERO,
         };

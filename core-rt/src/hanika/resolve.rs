@@ -27,10 +27,14 @@ pub(super) fn resolve<S: Slab>(ray: &Ray<S>, triangle: &TriangleRecord) -> Surfa
     let mut normal: Triple<i64> = [0; 3];
     (normal[r], normal[p], normal[q]) = (1 << UNIT_BITS, n_p, n_q);
     let normal = if away { normal.map(|c| -c) } else { normal };
+    // Along r, N = e1 x e2 is positive where the vertices run counter-clockwise seen from there; below 2^59.
+    let [v0, v1, v2] = triangle.vertices().map(|v| v.map(i64::from));
+    let area = (v1[p] - v0[p]) * (v2[q] - v0[q]) - (v1[q] - v0[q]) * (v2[p] - v0[p]);
     Surface {
         point: [moved(o[0], d[0]), moved(o[1], d[1]), moved(o[2], d[2])],
         // It is not zero along r.
         normal: normalise(normal).unwrap_or_else(|| GridQ31::unit_from_q30([0, 0, 1 << 30])),
+        front: away != (area > 0),
         u: weight(v),
         v: weight(u),
     }

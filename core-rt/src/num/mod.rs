@@ -4,11 +4,13 @@
 //! and every plain operator is expected not to overflow: builds with overflow checks trap where an
 //! argument is wrong. Where wrapping is meant, the operation says so.
 
+mod power;
 mod recip;
 mod rsqrt;
 
+pub use power::power;
 pub use recip::{RECIPROCAL_ERROR_BITS, Reciprocal16, reciprocal};
-pub use rsqrt::{inverse_sqrt_u32, inverse_sqrt_u64};
+pub use rsqrt::{inverse_sqrt_u32, inverse_sqrt_u64, sqrt_u32, sqrt_u64};
 
 use core::fmt::Debug;
 use core::ops::{Add, Mul, Neg, Shl, Shr, Sub};

@@ -59,9 +59,46 @@ pub fn inverse_sqrt_u64(x: u64) -> u64 {
     y_q32
 }
 
+/// `sqrt(x)`, relative error below 2^-12 and rounded down; any x.
+#[inline]
+pub fn sqrt_u32(x: u32) -> u32 {
+    if x == 0 {
+        return 0;
+    }
+    let half_shift = x.leading_zeros() / 2;
+    let normal = x << (2 * half_shift);
+    // sqrt = x / sqrt(x): below 2^16 2^16, and where x is largest its inverse is half of that.
+    (((normal >> 16) * inverse_sqrt_u32(normal)) >> 15) >> half_shift
+}
+
+/// `sqrt(x)`, relative error below 2^-27 and rounded down; any x.
+#[inline]
+pub fn sqrt_u64(x: u64) -> u64 {
+    if x == 0 {
+        return 0;
+    }
+    let half_shift = x.leading_zeros() / 2;
+    let normal = x << (2 * half_shift);
+    (((normal >> 32) * inverse_sqrt_u64(normal)) >> 31) >> half_shift
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn roots_are_within_the_stated_error() {
+        assert_eq!((sqrt_u32(0), sqrt_u64(0)), (0, 0));
+        for x in leading_words().flat_map(|x| (0..32).step_by(3).map(move |shift| x >> shift)).filter(|&x| x > 0) {
+            // The root's own relative error is half of its square's; and it is rounded down.
+            let root = u64::from(sqrt_u32(x));
+            assert!(root * root <= u64::from(x) + (u64::from(x) >> 11), "{x:#x}: {root:#x}");
+            assert!((root + 1) * (root + 1) >= u64::from(x) - (u64::from(x) >> 11), "{x:#x}: {root:#x}");
+            let wide = u128::from(x) << 32;
+            let root = u128::from(sqrt_u64(wide as u64));
+            assert!(root * root <= wide + (wide >> 26) && (root + 1) * (root + 1) >= wide - (wide >> 26), "{x:#x}");
+        }
+    }
 
     /// Inputs at the ends of the range, at the ends of every table bin, and spread between.
     fn leading_words() -> impl Iterator<Item = u32> {

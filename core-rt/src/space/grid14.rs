@@ -5,9 +5,9 @@
 use fixed::types::{I2F14, U16F16};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-use super::{Space, is_unit_q30};
+use super::{Space, fresnel_q16, is_unit_q30};
 use crate::colour::Rgb16;
-use crate::num::{Triple, bits, dot, inverse_sqrt_u32, round_shift, sub};
+use crate::num::{Triple, bits, dot, inverse_sqrt_u32, power, round_shift, sqrt_u32, sub};
 
 /// The space of 14-bit grids.
 #[derive(Clone, Copy, Debug, Default)]
@@ -104,6 +104,68 @@ impl Space for Grid14 {
         let cosine_q28 = dot_q28(a, b);
         (cosine_q28 > 0).then(|| U16F16::from_bits((round_shift(cosine_q28, 12) as u32).min(1 << 16)))
     }
+
+    /// 2 (d . n) is little over 2 in Q14, and its product with n below 2^30.
+    #[inline]
+    fn reflect(along: Self::Unit, normal: Self::Unit) -> Self::Unit {
+        let twice_q14 = round_shift(dot_q28(along, normal), 13);
+        let mirrored = |d: I2F14, n: I2F14| narrow(i32::from(d.to_bits()) - round_shift(twice_q14 * bits_of(n), 14));
+        [mirrored(along[0], normal[0]), mirrored(along[1], normal[1]), mirrored(along[2], normal[2])]
+    }
+
+    /// The part along the surface is (d + c n) eta, c = -(d . n), and the rest is left for the normal: sqrt(1 - part^2).
+    /// eta is below 16, so 16 bits in Q12, and its product with what is at most 1 in Q14 below 2^31.
+    #[inline]
+    fn refract(along: Self::Unit, normal: Self::Unit, eta_q28: u32) -> Option<(Self::Unit, U16F16)> {
+        let eta_q12 = (eta_q28 >> 16) as i32;
+        let cosine_q14 = -round_shift(dot_q28(along, normal), 14);
+        let part = |d: I2F14, n: I2F14| {
+            let across_q14 = i32::from(d.to_bits()) + round_shift(cosine_q14 * bits_of(n), 14);
+            round_shift(across_q14.clamp(-(1 << 14), 1 << 14) * eta_q12, 12)
+        };
+        let part = [part(along[0], normal[0]), part(along[1], normal[1]), part(along[2], normal[2])];
+        if bits(part) > 15 {
+            return None; // at least 2
+        }
+        let square_q28: u32 = part.iter().map(|&c| (c * c) as u32).sum(); // at most 3 * 2^30
+        let behind_q14 = sqrt_u32((1u32 << 28).checked_sub(square_q28)?) as i32;
+        let bent = |part: i32, n: I2F14| narrow(part - round_shift(behind_q14 * bits_of(n), 14));
+        let unit = [bent(part[0], normal[0]), bent(part[1], normal[1]), bent(part[2], normal[2])];
+        Some((unit, U16F16::from_bits((behind_q14 as u32).min(1 << 14) << 2)))
+    }
+
+    #[inline]
+    fn halfway(a: Self::Unit, b: Self::Unit) -> Option<Self::Unit> {
+        let sum = |a: I2F14, b: I2F14| bits_of(a) + bits_of(b);
+        normalise([sum(a[0], b[0]), sum(a[1], b[1]), sum(a[2], b[2])])
+    }
+
+    /// The chord is little over 2 at most, its square below 2^31 in Q28: twice that is the versine in Q30.
+    #[inline]
+    fn lobe(a: Self::Unit, b: Self::Unit, exponent_q2: u16) -> U16F16 {
+        let square = |a: I2F14, b: I2F14| {
+            let chord = bits_of(a) - bits_of(b);
+            (chord * chord) as u32
+        };
+        let square_q28 = square(a[0], b[0]) + square(a[1], b[1]) + square(a[2], b[2]);
+        U16F16::from_bits(power(square_q28.min(1 << 30) << 1, exponent_q2))
+    }
+
+    #[inline]
+    fn fresnel(cosine: U16F16, r0: u16) -> U16F16 {
+        U16F16::from_bits(fresnel_q16(cosine.to_bits(), r0.into()))
+    }
+}
+
+#[inline(always)]
+fn bits_of(c: I2F14) -> i32 {
+    c.to_bits().into()
+}
+
+/// A component that is little over 1 at most.
+#[inline(always)]
+fn narrow(c_q14: i32) -> I2F14 {
+    I2F14::from_bits(c_q14.clamp(-(1 << 15), (1 << 15) - 1) as i16)
 }
 
 /// At most 3 * 2^28, in practice little over 2^28.

@@ -83,6 +83,8 @@ struct Report {
     rays: u64,
     primary_rays: u64,
     shadow_rays: u64,
+    reflection_rays: u64,
+    refraction_rays: u64,
     box_tests: u64,
     triangle_tests: u64,
     /// From the first camera ray of each tile to its last pixel; none where they cannot be counted.
@@ -174,7 +176,7 @@ fn report(
 ) -> Report {
     let Outcome { picture, report, counts } = outcome;
     let work = counted.report;
-    let rays = work.primary_rays + work.shadow_rays;
+    let rays = work.primary_rays + work.shadow_rays + work.reflection_rays + work.refraction_rays;
     let instructions = counts.as_ref().map(|counts| counts.instructions);
     let apart = |counts: &Counts| counts.run.instructions.saturating_sub(counts.instructions);
     Report {
@@ -188,6 +190,8 @@ fn report(
         rays,
         primary_rays: work.primary_rays,
         shadow_rays: work.shadow_rays,
+        reflection_rays: work.reflection_rays,
+        refraction_rays: work.refraction_rays,
         box_tests: work.box_tests,
         triangle_tests: work.triangle_tests,
         instructions,

@@ -52,6 +52,8 @@ struct Report {
 struct Rays {
     primary: u64,
     shadow: u64,
+    reflection: u64,
+    refraction: u64,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -67,7 +69,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         width: picture.width(),
         height: picture.height(),
         image_crc32: format!("{:08x}", picture.crc32()),
-        rays: Rays { primary: counts.primary_rays, shadow: counts.shadow_rays },
+        rays: Rays {
+            primary: counts.primary_rays,
+            shadow: counts.shadow_rays,
+            reflection: counts.reflection_rays,
+            refraction: counts.refraction_rays,
+        },
         box_tests: counts.box_tests,
         triangle_tests: counts.triangle_tests,
         threads: pool.current_num_threads(),

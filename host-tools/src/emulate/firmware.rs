@@ -112,7 +112,8 @@ impl Wanted<'_> {
             Transport::Semihosting => "",
             Transport::Rtt => "-rtt",
         };
-        format!("{}-{kernel}-{:x}-{}{hits}{count}{transport}", self.board.name, traits.needs, traits.depth)
+        let Traits { needs, depth, branches, .. } = traits;
+        format!("{}-{kernel}-{needs:x}-{depth}-{branches}{hits}{count}{transport}", self.board.name)
     }
 
     fn build(&self, repository: &Repository, path: &Path, transport: Transport) -> Result<(), EmulateError> {

@@ -65,7 +65,7 @@ pub(super) fn radiance(linear: DVec3) -> Radiance {
 /// A material as the blob has it.
 pub(super) fn material(material: &model::Material) -> Material {
     let albedo = material.colour.to_array().map(|c| (c.clamp(0.0, 1.0) * 65_535.0 + 0.5).floor() as u16);
-    Material { emission: radiance(material.emission), albedo, reserved: 0 }
+    Material { emission: radiance(material.emission), albedo, lustre: 0 }
 }
 
 /// A unit vector in Q30.

@@ -110,6 +110,7 @@ pub(super) fn write<K: Kernel>(
         background: header::radiance(parts.plain.background),
         ambient: header::radiance(model.render.ambient),
         transfer: header::transfer(model.render.transfer),
+        max_depth: 0,
         root: parts.root,
         depth: parts.depth,
         counts: Counts {
@@ -118,6 +119,7 @@ pub(super) fn write<K: Kernel>(
             smooth: corners.len() as u32 / 3,
             normals: normals.len() as u32,
             materials: parts.materials.len() as u32,
+            lustres: 0,
             lights: lights.len() as u32,
         },
         file_triangles: model.triangles.len() as u32,

@@ -208,7 +208,14 @@ fn is_unit(vector: &[i64; 3], unit: f64) -> bool {
 }
 
 fn shading(blob: &Blob, model: &Model) -> Checked {
-    rule(blob.materials.iter().all(|m| m.reserved == 0), "reserved words")?;
+    rule(blob.materials.iter().all(|m| usize::from(m.lustre) <= blob.lustres.len()), "lustres")?;
+    rule(blob.header.max_depth == 0 && blob.lustres.is_empty(), "nothing but matt surfaces")?;
+    for lustre in &blob.lustres {
+        let zero = lustre.flags >> 2 | lustre.gain >> 4 | lustre.reserved;
+        rule(zero == 0 && !lustre.eta.contains(&0), "what a lustre may not have")?;
+        let black = lustre.colours.iter().flatten().all(|&channel| channel == 0);
+        rule(!black || (lustre.exponent, lustre.r0) == (0, 0), "what a lustre of nothing says")?;
+    }
     rule(blob.lights.len() == model.lights.len(), "number of lights")?;
     for (light, meant) in blob.lights.iter().zip(&model.lights) {
         rule(is_light(&light.radiance, meant.radiance), "strength of a light")?;

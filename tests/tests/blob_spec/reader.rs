@@ -63,8 +63,9 @@ pub(crate) struct Header {
     pub(crate) transfer: u64,
     pub(crate) root: u32,
     pub(crate) depth: u8,
-    /// Nodes, triangles, smooth, normals, materials, lights.
-    pub(crate) counts: [usize; 6],
+    pub(crate) max_depth: u8,
+    /// Nodes, triangles, smooth, normals, materials, lustres, lights.
+    pub(crate) counts: [usize; 7],
     pub(crate) file_triangles: u64,
     /// C, D, E, epsilon.
     pub(crate) arithmetic: [u8; 4],
@@ -98,6 +99,20 @@ pub(crate) struct Triangle {
 pub(crate) struct Material {
     pub(crate) emission: Radiance,
     pub(crate) albedo: [u16; 3],
+    pub(crate) lustre: u16,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lustre {
+    /// For entering and for leaving, Q28.
+    pub(crate) eta: [u32; 2],
+    /// Specular, reflected, refracted.
+    pub(crate) colours: [[u16; 3]; 3],
+    /// Q2.
+    pub(crate) exponent: u16,
+    pub(crate) gain: u16,
+    pub(crate) flags: u16,
+    pub(crate) r0: u16,
     pub(crate) reserved: u16,
 }
 
@@ -120,6 +135,7 @@ pub(crate) struct Blob {
     pub(crate) corners: Vec<Option<[u32; 3]>>,
     pub(crate) normals: Vec<[i64; 3]>,
     pub(crate) materials: Vec<Material>,
+    pub(crate) lustres: Vec<Lustre>,
     pub(crate) lights: Vec<Light>,
 }
 
@@ -206,9 +222,10 @@ impl Cursor<'_> {
             background: self.encoded_radiance(),
             ambient: self.encoded_radiance(),
             transfer: self.varint(32),
+            max_depth: self.unsigned(1) as u8,
             root: self.varint(32) as u32,
             depth: self.unsigned(1) as u8,
-            counts: [(); 6].map(|()| self.varint(32) as usize),
+            counts: [(); 7].map(|()| self.varint(32) as usize),
             file_triangles: self.varint(32),
             arithmetic: [(); 4].map(|()| self.unsigned(1) as u8),
             origin: self.three(|c| f64::from_bits(c.varint(64))),
@@ -256,7 +273,7 @@ pub(crate) fn read(bytes: &[u8]) -> Blob {
     assert_eq!(cursor.at, 24 + header_size, "header size");
     cursor.pad();
 
-    let [node_count, triangle_count, smooth, normal_count, material_count, light_count] = header.counts;
+    let [node_count, triangle_count, smooth, normal_count, material_count, lustre_count, light_count] = header.counts;
     let wide = |bit: u32| if header.needs >> bit & 1 == 1 { 4 } else { 2 };
     let nodes = cursor.section(node_count, |c| c.node(kernel));
     let triangles = cursor.section(triangle_count, |c| c.triangle(kernel));
@@ -270,7 +287,16 @@ pub(crate) fn read(bytes: &[u8]) -> Blob {
     let materials = cursor.section(material_count, |c| Material {
         emission: c.radiance(),
         albedo: c.three(|c| c.unsigned(2) as u16),
-        reserved: c.unsigned(2) as u16,
+        lustre: c.unsigned(2) as u16,
+    });
+    let lustres = cursor.section(lustre_count, |c| {
+        let mut words = |count: usize| (0..count).map(|_| c.unsigned(2) as u16).collect::<Vec<_>>();
+        let eta = words(4);
+        let colours = words(9);
+        let rest = words(5);
+        let eta = [0, 2].map(|i| u32::from(eta[i]) | u32::from(eta[i + 1]) << 16);
+        let colours = [0, 3, 6].map(|i| [colours[i], colours[i + 1], colours[i + 2]]);
+        Lustre { eta, colours, exponent: rest[0], gain: rest[1], flags: rest[2], r0: rest[3], reserved: rest[4] }
     });
     let lights = cursor.section(light_count, |c| Light {
         kind: c.unsigned(4) as u32,
@@ -281,5 +307,5 @@ pub(crate) fn read(bytes: &[u8]) -> Blob {
     let computed = crc32(&bytes[..cursor.at]);
     assert_eq!(cursor.unsigned(4), u64::from(computed), "checksum");
     assert_eq!(cursor.at, bytes.len(), "nothing follows");
-    Blob { kernel, header, nodes, triangles, ids, corners, normals, materials, lights }
+    Blob { kernel, header, nodes, triangles, ids, corners, normals, materials, lustres, lights }
 }

@@ -2,7 +2,8 @@
 
 use core_rt::blob::BlobError;
 use core_rt::kernel::Kernel;
-use core_rt::record::Light;
+use core_rt::profile::Need;
+use core_rt::record::{Light, Lustre};
 use core_rt::space::Space;
 use tests::blobs::{Draft, sample};
 use zerocopy::{FromZeros, IntoBytes};
@@ -60,6 +61,14 @@ fn light<K: Kernel>(draft: &mut Draft<K>, kind: u32) -> &mut Light {
     draft.lights.iter_mut().find(|light| light.kind == kind).expect("one of each")
 }
 
+/// Gives the sample a lustre that changes nothing, and rays that go on.
+fn shiny<K: Kernel>(draft: &mut Draft<K>) -> &mut Lustre {
+    draft.lustres = vec![Lustre { eta_q28: [1 << 28; 2], ..Lustre::new_zeroed() }];
+    (draft.header.counts.lustres, draft.header.max_depth) = (1, 4);
+    draft.materials[1].lustre = 1;
+    &mut draft.lustres[0]
+}
+
 fn broken_shading<K: Kernel>() {
     refused::<K>(
         true,
@@ -68,7 +77,15 @@ fn broken_shading<K: Kernel>() {
             ("ambient light too dim", |d| d.header.ambient.exponent = -16, BlobError::Shading),
             ("an emission out of range", |d| d.materials[1].emission.exponent = i16::MAX, BlobError::Shading),
             ("a light out of range", |d| d.lights[0].radiance.exponent = i16::MIN, BlobError::Shading),
-            ("a material from the future", |d| d.materials[0].reserved = 1, BlobError::Shading),
+            ("a lustre that does not exist", |d| d.materials[0].lustre = 1, BlobError::Shading),
+            ("a lustre from the future", |d| shiny(d).reserved = 1, BlobError::Shading),
+            ("a law of highlights from the future", |d| shiny(d).flags = 4, BlobError::Shading),
+            ("highlights that are too bright", |d| shiny(d).gain = 16, BlobError::Shading),
+            ("an index of refraction of nothing", |d| shiny(d).eta_q28[1] = 0, BlobError::Shading),
+            ("a mirror that is not declared", |d| shiny(d).reflected[2] = 1, BlobError::Undeclared(Need::Reflection)),
+            ("glass that is not declared", |d| shiny(d).refracted[0] = 1, BlobError::Undeclared(Need::Refraction)),
+            ("a highlight that is not declared", |d| shiny(d).specular[1] = 1, BlobError::Undeclared(Need::BlinnPhong)),
+            ("more depth than any scene has", |d| d.header.max_depth = 65, BlobError::Header),
             ("a kind of light from the future", |d| d.lights[1].kind = 2, BlobError::Shading),
             ("a direction of length zero", |d| light(d, Light::DIRECTIONAL).place = [0; 3], BlobError::Shading),
             ("a direction too long", |d| light(d, Light::DIRECTIONAL).place = [i32::MIN; 3], BlobError::Shading),

@@ -9,6 +9,7 @@ use core_rt::colour::Rgb888;
 use core_rt::render::{Sink, Tile, Workspace, render};
 use core_rt::scene::Scene;
 use core_rt::stats::NoStats;
+use core_rt::whitted::Branch;
 
 include!(concat!(env!("OUT_DIR"), "/profile.rs"));
 
@@ -26,9 +27,10 @@ impl Sink for Somewhere {
 
 fn draw() {
     let mut stack = heapless::Vec::<Waiting<Kernel>, DEPTH>::new();
+    let mut branches = heapless::Vec::<Branch<Kernel>, BRANCHES>::new();
     // Of any length, for all that the compiler knows.
     let (hits, pixels) = (black_box::<&mut [u32]>(&mut []), black_box::<&mut [Rgb888]>(&mut []));
-    let mut workspace = Workspace { stack: &mut stack, hits, pixels };
+    let mut workspace = Workspace { stack: &mut stack, branches: &mut branches, hits, pixels };
     match Scene::<This>::new_checked(black_box(&[])) {
         Ok(scene) => {
             let _ = black_box(render(&scene, [16; 2], &mut workspace, &mut Somewhere, &mut NoStats));
