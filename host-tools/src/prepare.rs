@@ -4,6 +4,7 @@
 
 mod header;
 mod layout;
+mod lustre;
 mod loss;
 mod unsupported;
 
@@ -14,7 +15,7 @@ pub use unsupported::{Unsupported, missing};
 use core_rt::arithmetic::Knobs;
 use core_rt::bvh::Child;
 use core_rt::kernel::{Bounds, Kernel};
-use core_rt::record::Material;
+use core_rt::record::{Lustre, Material};
 use thiserror::Error;
 
 use crate::grid::{Grid, GridError, Snapped};
@@ -160,7 +161,22 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
         let material = materials[model.triangles[id as usize].material as usize];
         K::triangle(settings, &snapped.corners(id), material).expect("a triangle that the grid and the kernel hold")
     };
-    let used: Vec<Material> = used.iter().map(|&m| header::material(&model.materials[m as usize])).collect();
+    let mut lustres: Vec<Lustre> = Vec::new();
+    let used: Vec<Material> = used
+        .iter()
+        .map(|&m| {
+            let material = &model.materials[m as usize];
+            // Materials often share one, and there are at most as many as materials.
+            let lustre = lustre::lustre(material).map_or(0, |lustre| {
+                let place = lustres.iter().position(|&known| known == lustre).unwrap_or_else(|| {
+                    lustres.push(lustre);
+                    lustres.len() - 1
+                });
+                place as u16 + 1
+            });
+            header::material(material, lustre)
+        })
+        .collect();
     let blob = layout::write::<K>(
         model,
         &grid,
@@ -173,6 +189,7 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
             triangles: ids.iter().map(triangle),
             ids: &ids,
             materials: &used,
+            lustres: &lustres,
         },
     )?;
     Ok(Prepared { blob, degenerates, grid })

@@ -1,12 +1,14 @@
 //! What stands in the header and in the records of shading, from f64.
 
 use core_rt::camera::CameraHeader;
-use core_rt::colour::{Radiance, Transfer};
+use core_rt::colour::{Albedo, Radiance, Transfer};
 use core_rt::kernel::Kernel;
 use core_rt::profile::{Need, Needs};
-use core_rt::record::{Light, Material};
+use core_rt::record::{Light, Lustre, Material};
+use core_rt::scene::MAX_BRANCHES;
 use glam::DVec3;
 
+use super::lustre;
 use crate::grid::Grid;
 use crate::model::{self, LightKind, Model};
 
@@ -63,9 +65,9 @@ pub(super) fn radiance(linear: DVec3) -> Radiance {
 }
 
 /// A material as the blob has it.
-pub(super) fn material(material: &model::Material) -> Material {
-    let albedo = material.colour.to_array().map(|c| (c.clamp(0.0, 1.0) * 65_535.0 + 0.5).floor() as u16);
-    Material { emission: radiance(material.emission), albedo, lustre: 0 }
+pub(super) fn material(material: &model::Material, lustre: u16) -> Material {
+    let albedo = lustre::albedo(material.colour * lustre::diffuse_weight(material));
+    Material { emission: radiance(material.emission), albedo, lustre }
 }
 
 /// A unit vector in Q30.
@@ -84,7 +86,11 @@ pub(super) fn light(light: &model::Light, grid: &Grid) -> Light {
 }
 
 /// What the model needs, widths of indices aside.
-pub(super) fn needs(model: &Model, materials: &[Material]) -> Needs {
+pub(super) fn needs(model: &Model, materials: &[Material], lustres: &[Lustre]) -> Needs {
+    let shines = |phong: bool| {
+        lustres.iter().any(|l| !l.specular_is_black() && (l.flags & Lustre::PHONG != 0) == phong)
+    };
+    let goes_on = |colour: fn(&Lustre) -> Albedo| max_depth(model) > 0 && lustres.iter().any(|l| colour(l) != [0; 3]);
     let any_light = |wanted: fn(&LightKind) -> bool| model.lights.iter().any(|light| wanted(&light.kind));
     Needs::NONE
         .with(Need::PointLight, any_light(|kind| matches!(kind, LightKind::Point(_))))
@@ -94,6 +100,15 @@ pub(super) fn needs(model: &Model, materials: &[Material]) -> Needs {
         .with(Need::Ambient, !radiance(model.render.ambient).is_black())
         .with(Need::Srgb, model.render.transfer == model::Transfer::Srgb)
         .with(Need::Linear, model.render.transfer == model::Transfer::Linear)
+        .with(Need::BlinnPhong, shines(false))
+        .with(Need::Phong, shines(true))
+        .with(Need::Reflection, goes_on(|l| l.reflected))
+        .with(Need::Refraction, goes_on(|l| l.refracted))
+}
+
+/// From how many surfaces a ray may go on.
+pub(super) fn max_depth(model: &Model) -> u8 {
+    model.render.max_depth.min(MAX_BRANCHES as u32) as u8
 }
 
 /// How pixels are encoded.

@@ -4,7 +4,7 @@ use core_rt::arithmetic::Arithmetic;
 use core_rt::blob::{Counts, Header, MAGIC, PREFIX_SIZE, Prefix, SourceGrid, TRAILER_SIZE, VERSION, crc32};
 use core_rt::kernel::Kernel;
 use core_rt::profile::Need;
-use core_rt::record::{Material, Record};
+use core_rt::record::{Lustre, Material, Record};
 use core_rt::section::ALIGN;
 use core_rt::space::Space;
 use zerocopy::IntoBytes;
@@ -48,6 +48,7 @@ pub(super) struct Parts<'a, N, T> {
     /// The file's number of each triangle.
     pub(super) ids: &'a [u32],
     pub(super) materials: &'a [Material],
+    pub(super) lustres: &'a [Lustre],
 }
 
 /// Memory of a blob's size, filled section by section: records go straight to their place.
@@ -98,7 +99,7 @@ pub(super) fn write<K: Kernel>(
     let wide_ids = model.triangles.len() > 1 << 16;
     // The largest index is kept for flat triangles.
     let wide_normals = normals.len() >= 1 << 16;
-    let needs = header::needs(model, parts.materials)
+    let needs = header::needs(model, parts.materials, parts.lustres)
         .with(Need::SmoothNormals, !corners.is_empty())
         .with(Need::WideIds, wide_ids)
         .with(Need::WideNormals, wide_normals);
@@ -110,7 +111,7 @@ pub(super) fn write<K: Kernel>(
         background: header::radiance(parts.plain.background),
         ambient: header::radiance(model.render.ambient),
         transfer: header::transfer(model.render.transfer),
-        max_depth: 0,
+        max_depth: if needs.branches() { header::max_depth(model) } else { 0 },
         root: parts.root,
         depth: parts.depth,
         counts: Counts {
@@ -119,7 +120,7 @@ pub(super) fn write<K: Kernel>(
             smooth: corners.len() as u32 / 3,
             normals: normals.len() as u32,
             materials: parts.materials.len() as u32,
-            lustres: 0,
+            lustres: parts.lustres.len() as u32,
             lights: lights.len() as u32,
         },
         file_triangles: model.triangles.len() as u32,
@@ -137,6 +138,7 @@ pub(super) fn write<K: Kernel>(
         corners.len() * integer(wide_normals),
         size_of_val(normals.as_slice()),
         size_of_val(parts.materials),
+        size_of_val(parts.lustres),
         size_of_val(lights.as_slice()),
         TRAILER_SIZE,
     ]
@@ -161,6 +163,7 @@ pub(super) fn write<K: Kernel>(
     writer.integers(&corners, wide_normals);
     writer.records(normals.into_iter());
     writer.records(parts.materials.iter().copied());
+    writer.records(parts.lustres.iter().copied());
     writer.records(lights.into_iter());
     Ok(writer.close())
 }

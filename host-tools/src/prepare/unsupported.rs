@@ -67,7 +67,7 @@ pub fn missing(model: &Model) -> Vec<String> {
         let extras = extras(material);
         if !extras.is_empty() {
             let name = material.name.escape_debug();
-            missing.push(format!("material `{name}` is drawn as Lambert; not supported yet: {}", extras.join(", ")));
+            missing.push(format!("material `{name}` is drawn without what is not supported yet: {}", extras.join(", ")));
         }
     }
     missing
@@ -76,12 +76,8 @@ pub fn missing(model: &Model) -> Vec<String> {
 /// What a material has that a Lambert surface of one colour has not.
 fn extras(material: &Material) -> Vec<&'static str> {
     let extras = [
-        (material.kind == MaterialKind::Metal, "metal"),
-        (material.kind == MaterialKind::Dielectric, "dielectric"),
-        (material.kind == MaterialKind::Mirror, "mirror"),
-        (material.kind == MaterialKind::Lambert && material.specular.is_some(), "highlights"),
-        (material.weights.is_some_and(|[.., refracted]| refracted > 0.0), "transparency"),
-        (material.weights.is_some_and(|weights| weights[..3] != [1.0, 0.0, 0.0]), "weights"),
+        (material.kind == MaterialKind::Metal && material.weights.is_none(), "metal towards white at grazing angles"),
+        (material.tinted_shadow, "tinted shadow"),
         (material.checker.is_some(), "checker"),
         (material.texture.is_some(), "texture"),
     ];
@@ -135,8 +131,8 @@ mod tests {
         let expected = [
             "samples: more than one a pixel is not supported yet; drawn with one",
             "colours of vertices are not supported yet, and are left out",
-            "material `a\\nb` is drawn as Lambert; not supported yet: dielectric, transparency, weights, checker",
-            "material `c` is drawn as Lambert; not supported yet: highlights",
+            "material `a\\nb` is drawn without what is not supported yet: dielectric, transparency, weights, checker",
+            "material `c` is drawn without what is not supported yet: highlights",
         ];
         assert_eq!(missing(&model), expected);
     }

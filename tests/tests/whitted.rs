@@ -1,0 +1,42 @@
+//! Highlights, mirrors and glass by every kernel, against the f64 reference.
+
+use host_tools::compare::compare;
+use host_tools::engine::ENGINES;
+use host_tools::import;
+use host_tools::picture::Picture;
+use host_tools::prepare::Options;
+use host_tools::reference::Reference;
+
+#[test]
+fn the_gallery() {
+    for scene in ["materials", "glass", "mirrors"] {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenes/gallery/{scene}/scene.toml"));
+        let mut model = import::load(&path).expect("a scene of the gallery").model;
+        model.spheres.clear();
+        model.background = host_tools::model::Background::Colour(glam::DVec3::new(0.3, 0.4, 0.5));
+        for material in &mut model.materials {
+            (material.checker, material.tinted_shadow) = (None, false);
+        }
+        for light in &mut model.lights {
+            light.falloff = host_tools::model::Falloff::None;
+        }
+        model.render.samples = 1;
+        for size in [[256, 256], [160, 128]] {
+            model.render.size = size;
+            let [width, height] = size;
+            let (pixels, _) = Reference::new(&model).render(size, &|_| {});
+            let truth = Picture::from_fn(width, height, |x, y| pixels[(y * width + x) as usize]);
+            truth.write_png(std::path::Path::new(&format!("/tmp/w-{scene}-{width}-ref.png"))).unwrap();
+            for engine in ENGINES {
+                let blob = engine.prepare(&model, &Options::default()).expect("it fits").blob;
+                let rendered = engine.render(blob.bytes(), [32, 32], &|_| {}).expect("a blob just made");
+                let apart = compare(&rendered.picture, &truth).expect("one size");
+                rendered.picture.write_png(std::path::Path::new(&format!("/tmp/w-{scene}-{width}-{}.png", engine.name()))).unwrap();
+                println!(
+                    "{scene} {width} {}: over 64 {}, over 4 {}, over 1 {}, psnr {:.1}; {:?}",
+                    engine.name(), apart.over_64, apart.over_4, apart.over_1, apart.psnr.unwrap_or(99.0), rendered.counts
+                );
+            }
+        }
+    }
+}
