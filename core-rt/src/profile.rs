@@ -42,11 +42,39 @@ pub enum Need {
     Reflection = 1 << 12,
     /// Light that passes a surface.
     Refraction = 1 << 13,
+    /// Spheres.
+    Spheres = 1 << 14,
+    /// Lights that fade with distance.
+    Falloff = 1 << 15,
+    /// A background that depends on the direction.
+    Sky = 1 << 16,
+    /// Cubes of a second albedo.
+    Checker = 1 << 17,
+    /// Shadows that glass colours.
+    TintedShadow = 1 << 18,
+    /// Camera rays in parallel.
+    Orthographic = 1 << 19,
+    /// Several camera rays a pixel.
+    Supersampling = 1 << 20,
+    /// Albedos at vertices.
+    VertexColours = 1 << 21,
+    /// Pictures on surfaces.
+    Texture = 1 << 22,
+    /// Pictures on surfaces, smooth between texels.
+    Bilinear = 1 << 23,
+    /// More than 2^16 - 1 texture coordinates.
+    WideUvs = 1 << 24,
+    /// Pixels of three bytes.
+    Rgb888 = 1 << 25,
+    /// Pixels of 16 bits, dithered.
+    Rgb565 = 1 << 26,
+    /// Pixels of one byte.
+    Gray8 = 1 << 27,
 }
 
 impl Need {
     /// All of them.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 28] = [
         Self::PointLight,
         Self::DirectionalLight,
         Self::Shadows,
@@ -61,6 +89,20 @@ impl Need {
         Self::Phong,
         Self::Reflection,
         Self::Refraction,
+        Self::Spheres,
+        Self::Falloff,
+        Self::Sky,
+        Self::Checker,
+        Self::TintedShadow,
+        Self::Orthographic,
+        Self::Supersampling,
+        Self::VertexColours,
+        Self::Texture,
+        Self::Bilinear,
+        Self::WideUvs,
+        Self::Rgb888,
+        Self::Rgb565,
+        Self::Gray8,
     ];
 }
 
@@ -81,6 +123,20 @@ impl Display for Need {
             Self::Phong => "Phong highlights",
             Self::Reflection => "reflection",
             Self::Refraction => "refraction",
+            Self::Spheres => "spheres",
+            Self::Falloff => "lights that fade",
+            Self::Sky => "a sky",
+            Self::Checker => "checkers",
+            Self::TintedShadow => "tinted shadows",
+            Self::Orthographic => "parallel camera rays",
+            Self::Supersampling => "several samples a pixel",
+            Self::VertexColours => "vertex colours",
+            Self::Texture => "textures",
+            Self::Bilinear => "smooth textures",
+            Self::WideUvs => "wide texture coordinates",
+            Self::Rgb888 => "RGB888 output",
+            Self::Rgb565 => "RGB565 output",
+            Self::Gray8 => "gray output",
         })
     }
 }

@@ -4,8 +4,8 @@
 
 mod header;
 mod layout;
-mod lustre;
 mod loss;
+mod lustre;
 mod unsupported;
 
 pub use layout::Blob;

@@ -10,7 +10,8 @@ use host_tools::reference::Reference;
 #[test]
 fn the_gallery() {
     for scene in ["materials", "glass", "mirrors"] {
-        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenes/gallery/{scene}/scene.toml"));
+        let path =
+            std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenes/gallery/{scene}/scene.toml"));
         let mut model = import::load(&path).expect("a scene of the gallery").model;
         model.spheres.clear();
         model.background = host_tools::model::Background::Colour(glam::DVec3::new(0.3, 0.4, 0.5));
@@ -31,10 +32,18 @@ fn the_gallery() {
                 let blob = engine.prepare(&model, &Options::default()).expect("it fits").blob;
                 let rendered = engine.render(blob.bytes(), [32, 32], &|_| {}).expect("a blob just made");
                 let apart = compare(&rendered.picture, &truth).expect("one size");
-                rendered.picture.write_png(std::path::Path::new(&format!("/tmp/w-{scene}-{width}-{}.png", engine.name()))).unwrap();
+                rendered
+                    .picture
+                    .write_png(std::path::Path::new(&format!("/tmp/w-{scene}-{width}-{}.png", engine.name())))
+                    .unwrap();
                 println!(
                     "{scene} {width} {}: over 64 {}, over 4 {}, over 1 {}, psnr {:.1}; {:?}",
-                    engine.name(), apart.over_64, apart.over_4, apart.over_1, apart.psnr.unwrap_or(99.0), rendered.counts
+                    engine.name(),
+                    apart.over_64,
+                    apart.over_4,
+                    apart.over_1,
+                    apart.psnr.unwrap_or(99.0),
+                    rendered.counts
                 );
             }
         }

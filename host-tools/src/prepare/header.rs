@@ -87,9 +87,8 @@ pub(super) fn light(light: &model::Light, grid: &Grid) -> Light {
 
 /// What the model needs, widths of indices aside.
 pub(super) fn needs(model: &Model, materials: &[Material], lustres: &[Lustre]) -> Needs {
-    let shines = |phong: bool| {
-        lustres.iter().any(|l| !l.specular_is_black() && (l.flags & Lustre::PHONG != 0) == phong)
-    };
+    let shines =
+        |phong: bool| lustres.iter().any(|l| !l.specular_is_black() && (l.flags & Lustre::PHONG != 0) == phong);
     let goes_on = |colour: fn(&Lustre) -> Albedo| max_depth(model) > 0 && lustres.iter().any(|l| colour(l) != [0; 3]);
     let any_light = |wanted: fn(&LightKind) -> bool| model.lights.iter().any(|light| wanted(&light.kind));
     Needs::NONE

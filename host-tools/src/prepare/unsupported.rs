@@ -67,7 +67,8 @@ pub fn missing(model: &Model) -> Vec<String> {
         let extras = extras(material);
         if !extras.is_empty() {
             let name = material.name.escape_debug();
-            missing.push(format!("material `{name}` is drawn without what is not supported yet: {}", extras.join(", ")));
+            missing
+                .push(format!("material `{name}` is drawn without what is not supported yet: {}", extras.join(", ")));
         }
     }
     missing

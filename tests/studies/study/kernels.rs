@@ -10,7 +10,7 @@ use core_rt::kernel::{Kernel, NONE, Vertices};
 use core_rt::num::Triple;
 use core_rt::profile::Full;
 use core_rt::render::{Tile, Workspace, render_tile};
-use core_rt::scene::{MAX_DEPTH, Scene};
+use core_rt::scene::{MAX_BRANCHES, MAX_DEPTH, Scene};
 use core_rt::stats::NoStats;
 use float_rt::{Float32, Float64};
 use host_tools::engine::{self, Engine};
@@ -167,7 +167,9 @@ fn drawer<K: Kernel>(blob: &Blob) -> Drawer<'_> {
     Box::new(move || {
         let mut stack = heapless::Vec::<Waiting<K>, MAX_DEPTH>::new();
         let (mut hits, mut pixels) = ([0; 256], [[0; 3]; 256]);
-        let mut workspace = Workspace { stack: &mut stack, hits: &mut hits, pixels: &mut pixels };
+        let mut branches = heapless::Vec::<_, { MAX_BRANCHES + 1 }>::new();
+        let mut workspace =
+            Workspace { stack: &mut stack, branches: &mut branches, hits: &mut hits, pixels: &mut pixels };
         let tiles: Vec<Tile> = Tile::of(scene.header.size, [SIDE; 2]).collect();
         // Odd, so that they are not all in one column.
         for tile in tiles.iter().step_by((tiles.len() / TIMED_TILES) | 1) {
