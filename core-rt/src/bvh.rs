@@ -70,8 +70,8 @@ pub trait Intersect<K: Kernel> {
     /// The nearest hit, the smallest (t, id), or [`NONE`].
     fn closest(&self, ray: &K::Ray, stack: &mut Stack<K>, stats: &mut impl Stats) -> u32;
 
-    /// Whether anything is hit.
-    fn any(&self, ray: &K::Ray, stack: &mut Stack<K>, stats: &mut impl Stats) -> bool;
+    /// Whether anything that is hit blocks, by its index. Whatever is hit is asked about once.
+    fn any(&self, ray: &K::Ray, stack: &mut Stack<K>, stats: &mut impl Stats, blocks: impl FnMut(u32) -> bool) -> bool;
 
     /// The nearest hits of a tile of rays, row by row; a kernel that can may walk the tree once for all of them.
     fn closest_tile(
@@ -224,11 +224,17 @@ impl<K: Kernel> Intersect<K> for Bvh<'_, K> {
         hit
     }
 
-    fn any(&self, ray: &K::Ray, stack: &mut Stack<K>, stats: &mut impl Stats) -> bool {
+    fn any(
+        &self,
+        ray: &K::Ray,
+        stack: &mut Stack<K>,
+        stats: &mut impl Stats,
+        mut blocks: impl FnMut(u32) -> bool,
+    ) -> bool {
         let mut hit = false;
         let limit = K::reach(ray);
-        self.walk(ray, stack, stats, |_, triangle| {
-            hit = K::intersect(ray, triangle).is_some();
+        self.walk(ray, stack, stats, |index, triangle| {
+            hit = K::intersect(ray, triangle).is_some() && blocks(index);
             (!hit).then_some(limit)
         });
         hit

@@ -45,10 +45,46 @@ impl Radiance {
     pub fn is_black(&self) -> bool {
         self.mantissa == [0; 3]
     }
+
+    /// What a surface lets through of it; within half a unit of the mantissa.
+    #[inline]
+    #[must_use]
+    pub fn tinted(self, tint: &Albedo) -> Self {
+        let [r, g, b] = self.mantissa;
+        Self { mantissa: [rounded(r, tint[0]), rounded(g, tint[1]), rounded(b, tint[2])], ..self }
+    }
+
+    /// Times `factor_q16 * 2^exponent`, the factor in [1/2, 1). Each channel is within a unit of the mantissa, or of 2^-31
+    /// where the exponent cannot follow; it saturates.
+    #[inline]
+    #[must_use]
+    pub fn times(self, factor_q16: u16, exponent: i32) -> Self {
+        let (least, most) = (i32::from(*Self::EXPONENTS.start()), i32::from(*Self::EXPONENTS.end()));
+        let wanted = i32::from(self.exponent).saturating_add(exponent);
+        let exponent = wanted.clamp(least, most);
+        let mantissa = self.mantissa.map(|mantissa| {
+            // At most 2^32 - 2^17 + 1 before the rounding.
+            let product = (u32::from(mantissa) * u32::from(factor_q16) + (1 << 15)) >> 16;
+            // One of the two shifts is by nothing.
+            let dimmer = exponent.saturating_sub(wanted).clamp(0, 17) as u32;
+            let brighter = wanted.saturating_sub(exponent).clamp(0, 16) as u32;
+            (((product + (1 << dimmer >> 1)) >> dimmer) << brighter).min(u16::MAX.into()) as u16
+        });
+        Self { mantissa, exponent: exponent as i16 }
+    }
+}
+
+/// `a b / 65535`, as [`product`], to nearest: 65535 2^16 + 2^15 fits.
+#[inline(always)]
+fn rounded(a: u16, b: u16) -> u16 {
+    ((u32::from(a) * (u32::from(b) + u32::from(b >> 15)) + (1 << 15)) >> 16) as u16
 }
 
 /// Diffuse reflectance, linear RGB: `value / 65535`, up to 1.
 pub type Albedo = [u16; 3];
+
+/// All of the light.
+pub const WHITE: Albedo = [u16::MAX; 3];
 
 /// The reflectance of two surfaces, one after the other; within a unit, low, and white changes nothing.
 #[inline]
@@ -58,14 +94,27 @@ pub fn product(a: &Albedo, b: &Albedo) -> Albedo {
     [channel(a[0], b[0]), channel(a[1], b[1]), channel(a[2], b[2])]
 }
 
+/// A reflectance on the way to white: `albedo + (1 - albedo) share`.
+#[inline]
+#[must_use]
+pub fn towards_white(albedo: &Albedo, share: u16) -> Albedo {
+    albedo.map(|channel| channel + rounded(u16::MAX - channel, share))
+}
+
 /// What shading needs of a colour. The integer spaces share [`Rgb16`]; a float space brings its own.
 pub trait Colour: Copy + Default + core::fmt::Debug {
     /// The cosine of an angle of incidence, in [0, 1].
-    type Cosine: Copy + core::fmt::Debug;
+    type Cosine: Copy + Default + core::fmt::Debug;
+    /// Light on its way from a lamp.
+    type Light: Copy + core::fmt::Debug;
+    /// Light as it leaves a lamp.
+    fn light(radiance: &Radiance) -> Self::Light;
+    /// What glass leaves of it.
+    fn tinted(light: Self::Light, tint: &Albedo) -> Self::Light;
     /// Light as it stands in the blob.
     fn constant(radiance: &Radiance) -> Self;
     /// Light that arrives under an angle.
-    fn lit(radiance: &Radiance, cosine: Self::Cosine) -> Self;
+    fn lit(light: &Self::Light, cosine: Self::Cosine) -> Self;
     /// The sum, saturating.
     fn plus(self, other: Self) -> Self;
     /// What a surface of this reflectance gives back.
@@ -84,6 +133,17 @@ pub struct Rgb16(pub Triple<U16F16>);
 
 impl Colour for Rgb16 {
     type Cosine = U16F16;
+    type Light = Radiance;
+
+    #[inline]
+    fn light(radiance: &Radiance) -> Radiance {
+        *radiance
+    }
+
+    #[inline]
+    fn tinted(light: Radiance, tint: &Albedo) -> Radiance {
+        light.tinted(tint)
+    }
 
     #[inline]
     fn constant(radiance: &Radiance) -> Self {
@@ -190,6 +250,22 @@ mod tests {
             assert_eq!(product(&[albedo; 3], &[0; 3]), [0; 3]);
         }
         assert_eq!((Rgb16::share(U16F16::ONE), Rgb16::share(U16F16::ZERO)), (0xffff, 0));
+    }
+
+    #[test]
+    fn light_fades_and_grows_and_saturates() {
+        let light = |mantissa: u16, exponent| Radiance { mantissa: [mantissa; 3], exponent };
+        assert_eq!(light(0x8000, 0).times(0x8000, 1), light(0x4000, 1));
+        assert_eq!(light(0xffff, 15).times(0xffff, 0), light(0xfffe, 15));
+        assert_eq!(light(0xffff, 15).times(0x8000, 1), light(0xffff, 15), "saturates: half of it, twice over and more");
+        assert_eq!(light(0x4000, 15).times(0x8000, 2), light(0x8000, 15));
+        assert_eq!(light(0xffff, -15).times(0x8000, 0), light(0x8000, -15));
+        assert_eq!(light(0xffff, -15).times(0xffff, -14), light(4, -15));
+        assert_eq!(light(0xffff, 0).times(0xffff, i32::MIN), light(0, -15), "less than there is");
+        assert_eq!(light(1, 0).times(0xffff, i32::MAX), light(0xffff, 15));
+        assert_eq!(light(0xffff, 3).tinted(&[0xffff, 0x8000, 0]).mantissa, [0xffff, 0x8000, 0]);
+        assert_eq!(towards_white(&[0, 0x8000, 0xffff], 0xffff), [0xffff; 3]);
+        assert_eq!(towards_white(&[0, 0x8000, 0xffff], 0), [0, 0x8000, 0xffff]);
     }
 
     #[test]

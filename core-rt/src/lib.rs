@@ -28,6 +28,7 @@ pub mod colour;
 pub mod exact;
 pub mod hanika;
 pub mod kernel;
+mod light;
 pub mod num;
 pub mod profile;
 pub mod record;

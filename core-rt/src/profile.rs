@@ -70,11 +70,13 @@ pub enum Need {
     Rgb565 = 1 << 26,
     /// Pixels of one byte.
     Gray8 = 1 << 27,
+    /// Reflections that grow towards grazing angles.
+    Schlick = 1 << 28,
 }
 
 impl Need {
     /// All of them.
-    pub const ALL: [Self; 28] = [
+    pub const ALL: [Self; 29] = [
         Self::PointLight,
         Self::DirectionalLight,
         Self::Shadows,
@@ -103,6 +105,7 @@ impl Need {
         Self::Rgb888,
         Self::Rgb565,
         Self::Gray8,
+        Self::Schlick,
     ];
 }
 
@@ -137,6 +140,7 @@ impl Display for Need {
             Self::Rgb888 => "RGB888 output",
             Self::Rgb565 => "RGB565 output",
             Self::Gray8 => "gray output",
+            Self::Schlick => "reflections after Schlick",
         })
     }
 }

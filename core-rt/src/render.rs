@@ -155,7 +155,7 @@ pub fn render_tile<'w, P: Profile>(
         stats.ray(RayKind::Primary);
         let seen = match ray {
             Some(ray) => radiance(scene, &ray, hit, stack, branches, stats),
-            None => Colour::constant(&scene.header.background),
+            None => Colour::constant(&scene.header.background[0]),
         };
         *pixel = seen.encode(transfer);
     }

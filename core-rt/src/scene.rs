@@ -5,7 +5,7 @@ use crate::bvh::Bvh;
 use crate::camera::Camera;
 use crate::kernel::Kernel;
 use crate::profile::{Need, Profile};
-use crate::record::{Light, Lustre, Material};
+use crate::record::{Checker, Light, Lustre, Material};
 use crate::section::{Integers, Reader};
 use crate::space::Space;
 
@@ -26,6 +26,8 @@ pub struct Shading<'a, K: Kernel> {
     pub materials: &'a [Material],
     /// What is more than matt of them.
     pub lustres: &'a [Lustre],
+    /// Patterns of cubes.
+    pub checkers: &'a [Checker],
     /// Lights.
     pub lights: &'a [Light],
 }
@@ -130,6 +132,7 @@ fn view<'a, K: Kernel>(header: &Header, sections: &'a [u8]) -> Option<(Bvh<'a, K
         normals: reader.records(counts.normals)?,
         materials: reader.records(counts.materials)?,
         lustres: reader.records(counts.lustres)?,
+        checkers: reader.records(counts.checkers)?,
         lights: reader.records(counts.lights)?,
     };
     reader.bytes.is_empty().then_some((bvh, shading))

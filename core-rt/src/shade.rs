@@ -1,27 +1,24 @@
-//! The light that a surface sends of its own and of the lights: Lambert's law, highlights, hard shadows.
+//! The light that a surface sends of its own and of the lights: Lambert's law, highlights.
 //!
-//! `emission + albedo (ambient + sum of visible lights' radiance * cos) + specular * sum of radiance * lobe`. No 1 / pi and
-//! no falloff: a light of radiance 1 that shines straight down on a white surface makes it white. A lobe is the cosine
-//! between the normal and the direction half way to the light (Blinn, "Models of Light Reflection for Computer Synthesized
-//! Pictures", 1977), or between the mirrored view and the light (Phong, "Illumination for Computer Generated Pictures",
-//! 1975), to the material's exponent.
+//! `emission + albedo (ambient + sum of E cos) + specular * sum of E lobe`, for the light E that arrives. No 1 / pi: a light of
+//! radiance 1 that shines straight down on a white surface makes it white. A lobe is the cosine between the normal and the
+//! direction half way to the light (Blinn, "Models of Light Reflection for Computer Synthesized Pictures", 1977), or between
+//! the mirrored view and the light (Phong, "Illumination for Computer Generated Pictures", 1975), to the material's exponent.
 //!
-//! The shading normal is brought to the geometric normal's side, and that one to the viewer's. A light behind either
-//! gives nothing.
+//! The shading normal is brought to the geometric normal's side, and that one to the viewer's.
 
-use crate::bvh::{Intersect, Stack};
-use crate::colour::Colour;
+use crate::bvh::Stack;
+use crate::colour::{Albedo, Colour, towards_white};
 use crate::kernel::{Kernel, NONE, Surface};
+use crate::light::arriving;
 use crate::profile::{Need, Profile};
-use crate::record::{Light, Lustre, Material};
+use crate::record::{Lustre, Material};
 use crate::scene::Scene;
 use crate::space::{Scalar, Space};
-use crate::stats::{RayKind, Stats};
+use crate::stats::Stats;
 
 pub(crate) type SpaceOf<P> = <<P as Profile>::Kernel as Kernel>::Space;
-type UnitOf<P> = <SpaceOf<P> as Space>::Unit;
-/// The direction to a light, and the cosine.
-type Lit<P> = (UnitOf<P>, Scalar<SpaceOf<P>>);
+pub(crate) type UnitOf<P> = <SpaceOf<P> as Space>::Unit;
 pub(crate) type ColourOf<P> = <SpaceOf<P> as Space>::Colour;
 pub(crate) type RayOf<P> = <<P as Profile>::Kernel as Kernel>::Ray;
 
@@ -31,8 +28,12 @@ pub(crate) struct Shaded<'a, P: Profile> {
     pub(crate) surface: Surface<SpaceOf<P>>,
     /// The shading normal.
     pub(crate) normal: UnitOf<P>,
+    /// The cosine between it and the way back, if that is in front of it; only where there is a lustre.
+    pub(crate) cosine: Option<Scalar<SpaceOf<P>>>,
     /// `None` for a matt surface.
     pub(crate) lustre: Option<&'a Lustre>,
+    /// How far a metal's colours are on the way to white.
+    pub(crate) whiteness: u16,
     pub(crate) colour: ColourOf<P>,
 }
 
@@ -48,29 +49,53 @@ pub(crate) fn shade<'a, P: Profile>(
     let lustre = scene.lustre(material);
     let surface = P::Kernel::resolve(ray, triangle);
     let normal = shading_normal(scene, hit, &surface);
-    let shine = lustre.filter(|lustre| P::NEEDS.highlights() && !lustre.specular_is_black());
-    let along = shine.map(|_| P::Kernel::heading(ray));
-    let mut arriving = ColourOf::<P>::default();
-    let mut shining = ColourOf::<P>::default();
-    if P::NEEDS.has(Need::Ambient) {
-        arriving = Colour::constant(&scene.header.ambient);
-    }
-    for light in scene.shading.lights {
-        let Some((towards, cosine)) = direct(scene, &surface, normal, light, hit, stack, stats) else { continue };
-        arriving = arriving.plus(Colour::lit(&light.radiance, cosine));
-        if let Some((lustre, along)) = shine.zip(along) {
-            let lobe = lobe::<P>(lustre, along, normal, towards);
-            shining = shining.plus(Colour::lit(&light.radiance, lobe));
+    let along = lustre.map(|_| P::Kernel::heading(ray));
+    let cosine = along.and_then(|along| SpaceOf::<P>::cosine(SpaceOf::<P>::negate(along), normal));
+    let whiteness = match lustre {
+        Some(lustre) if P::NEEDS.has(Need::Schlick) && lustre.flags & Lustre::METAL != 0 => {
+            ColourOf::<P>::share(SpaceOf::<P>::fresnel(cosine.unwrap_or_default(), 0))
         }
-    }
-    let mut colour = arriving.reflected(&material.albedo);
-    if let Some(lustre) = shine {
-        colour = colour.plus(shining.reflected(&lustre.specular).doubled(lustre.gain.into()));
+        _ => 0,
+    };
+    let albedo = albedo(scene, material, &surface);
+    let shine = lustre.zip(along).filter(|(lustre, _)| P::NEEDS.highlights() && !lustre.specular_is_black());
+    let mut colour = ColourOf::<P>::default();
+    // What gives nothing back need not be lit.
+    if albedo != [0; 3] || shine.is_some() {
+        let mut diffuse = ColourOf::<P>::default();
+        let mut shining = ColourOf::<P>::default();
+        if P::NEEDS.has(Need::Ambient) {
+            diffuse = Colour::constant(&scene.header.ambient);
+        }
+        for light in scene.shading.lights {
+            let Some(arriving) = arriving(scene, &surface, normal, light, hit, stack, stats) else { continue };
+            diffuse = diffuse.plus(Colour::lit(&arriving.light, arriving.cosine));
+            if let Some((lustre, along)) = shine {
+                let lobe = lobe::<P>(lustre, along, normal, arriving.towards);
+                shining = shining.plus(Colour::lit(&arriving.light, lobe));
+            }
+        }
+        colour = diffuse.reflected(&albedo);
+        if let Some((lustre, _)) = shine {
+            let specular = towards_white(&lustre.specular, whiteness);
+            colour = colour.plus(shining.reflected(&specular).doubled(lustre.gain.into()));
+        }
     }
     if P::NEEDS.has(Need::Emission) && !material.emission.is_black() {
         colour = colour.plus(Colour::constant(&material.emission));
     }
-    Some(Shaded { surface, normal, lustre, colour })
+    Some(Shaded { surface, normal, cosine, lustre, whiteness, colour })
+}
+
+/// What a point gives back of diffuse light.
+fn albedo<P: Profile>(scene: &Scene<'_, P>, material: &Material, surface: &Surface<SpaceOf<P>>) -> Albedo {
+    if P::NEEDS.has(Need::Checker)
+        && let Some(checker) = scene.shading.checkers.get(usize::from(material.checker).wrapping_sub(1))
+        && SpaceOf::<P>::is_odd(surface.point, SpaceOf::<P>::longest(surface.normal), checker)
+    {
+        return checker.other;
+    }
+    material.albedo
 }
 
 /// How much of a light is seen in a highlight.
@@ -103,43 +128,10 @@ fn shading_normal<P: Profile>(scene: &Scene<'_, P>, hit: u32, surface: &Surface<
     }
 }
 
-/// The direction to a light and the cosine there, if it is in front of the surface and nothing is between.
-fn direct<P: Profile>(
-    scene: &Scene<'_, P>,
-    surface: &Surface<SpaceOf<P>>,
-    normal: UnitOf<P>,
-    light: &Light,
-    hit: u32,
-    stack: &mut Stack<P::Kernel>,
-    stats: &mut impl Stats,
-) -> Option<Lit<P>> {
-    let point_light =
-        P::NEEDS.has(Need::PointLight) && (!P::NEEDS.has(Need::DirectionalLight) || light.kind == Light::POINT);
-    let towards = if point_light {
-        SpaceOf::<P>::towards(surface.point, SpaceOf::<P>::point(light.place))?
-    } else {
-        SpaceOf::<P>::unit_from_q30(light.place)
-    };
-    SpaceOf::<P>::cosine(surface.normal, towards)?;
-    let cosine = SpaceOf::<P>::cosine(normal, towards)?;
-    if P::NEEDS.has(Need::Shadows) {
-        let shadow = if point_light {
-            P::Kernel::segment(scene.settings, surface, light.place, hit)
-        } else {
-            P::Kernel::leaving(scene.settings, surface, towards, hit)
-        };
-        stats.ray(RayKind::Shadow);
-        if shadow.is_some_and(|ray| scene.bvh.any(&ray, stack, stats)) {
-            return None;
-        }
-    }
-    Some((towards, cosine))
-}
-
 impl<'a, P: Profile> Scene<'a, P> {
     /// The triangle and the material of a hit; `None` for a miss.
     #[inline]
-    fn surface(&self, hit: u32) -> Option<(&'a <P::Kernel as Kernel>::Triangle, &'a Material)> {
+    pub(crate) fn surface(&self, hit: u32) -> Option<(&'a <P::Kernel as Kernel>::Triangle, &'a Material)> {
         if hit == NONE {
             return None;
         }
@@ -149,8 +141,8 @@ impl<'a, P: Profile> Scene<'a, P> {
 
     /// What a material is more than matt.
     #[inline]
-    fn lustre(&self, material: &Material) -> Option<&'a Lustre> {
-        if !P::NEEDS.highlights() && !P::NEEDS.branches() {
+    pub(crate) fn lustre(&self, material: &Material) -> Option<&'a Lustre> {
+        if !P::NEEDS.highlights() && !P::NEEDS.branches() && !P::NEEDS.has(Need::TintedShadow) {
             return None;
         }
         self.shading.lustres.get(usize::from(material.lustre).wrapping_sub(1))

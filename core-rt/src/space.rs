@@ -12,12 +12,32 @@ pub use grid29::{Grid29, GridQ31};
 
 use core::fmt::Debug;
 
-use crate::colour::Colour;
+use crate::colour::{Colour, Radiance};
 use crate::num::Triple;
-use crate::record::Record;
+use crate::record::{Checker, Reach, Record};
 
 /// A cosine, or a share of light: a number in [0, 1].
 pub type Scalar<S> = <<S as Space>::Colour as Colour>::Cosine;
+
+/// Light on its way.
+pub type Light<S> = <<S as Space>::Colour as Colour>::Light;
+
+/// How many times brighter than at its reach a light gets: nearer than a 16th of it, it is as bright as there.
+pub const BRIGHTEST: u32 = 256;
+
+/// `radiance` times `factor / 2^32 * 2^exponent`, at most [`BRIGHTEST`] times. The factor is not 0, and is truncated to 16 bits.
+#[inline]
+pub(crate) fn faded(radiance: Radiance, factor_q32: u32, exponent: i32) -> Radiance {
+    let zeros = factor_q32.leading_zeros();
+    let (factor_q16, exponent) = (((factor_q32 << zeros) >> 16) as u16, exponent - zeros as i32);
+    // From 2^8 on, that is [1/2, 1) times 2^9.
+    if exponent > 8 { radiance.times(1 << 15, 9) } else { radiance.times(factor_q16, exponent) }
+}
+
+/// By how much a point is raised before it is told in which cube it lies, in Q31 of a cube.
+pub(crate) const fn raised_q31(is_across: bool) -> u32 {
+    1 << if is_across { 25 } else { 21 }
+}
 
 /// Schlick's share in Q16 for a cosine in Q16; within 2^-13. The fifth power is that of 15 bits, so that products fit 32.
 #[inline]
@@ -63,9 +83,9 @@ pub trait Space: Copy + Debug + Default + Send + Sync + 'static {
     fn cosine(a: Self::Unit, b: Self::Unit) -> Option<Scalar<Self>>;
     /// The direction of a ray that came `along` and is mirrored at a surface: d - 2 (d . n) n.
     fn reflect(along: Self::Unit, normal: Self::Unit) -> Self::Unit;
-    /// The direction of a ray that came `along` and passes a surface whose normal is towards it, and the cosine behind it
-    /// (Snell's law). `eta_q28` is the index before the surface by that behind it; `None` where all is reflected.
-    fn refract(along: Self::Unit, normal: Self::Unit, eta_q28: u32) -> Option<(Self::Unit, Scalar<Self>)>;
+    /// The direction of a ray that came `along` and passes a surface whose normal is towards it (Snell's law). `eta_q28` is
+    /// the index before the surface by that behind it; `None` where all is reflected.
+    fn refract(along: Self::Unit, normal: Self::Unit, eta_q28: u32) -> Option<Self::Unit>;
     /// The direction half way between two; `None` where they are opposite.
     fn halfway(a: Self::Unit, b: Self::Unit) -> Option<Self::Unit>;
     /// The cosine between two directions to a power in Q2, by the chord between them; 0 from a right angle on.
@@ -73,6 +93,15 @@ pub trait Space: Copy + Debug + Default + Send + Sync + 'static {
     /// The share of light that is reflected under a cosine (Schlick, "An Inexpensive BRDF Model for Physically-based
     /// Rendering", 1994): r0 + (1 - r0) (1 - cos)^5.
     fn fresnel(cosine: Scalar<Self>, r0: u16) -> Scalar<Self>;
+    /// The light that arrives at one point from another, different one, by the square of the distance: at most
+    /// [`BRIGHTEST`] times what it is at `reach`.
+    fn faded(light: Light<Self>, from: Self::Point, to: Self::Point, reach: &Reach) -> Light<Self>;
+    /// The shares of what is straight down and straight up, for a direction: (1 - y) / 2 and (1 + y) / 2.
+    fn altitude(unit: Self::Unit) -> [Scalar<Self>; 2];
+    /// The axis along which a direction is longest; of equal ones the first.
+    fn longest(unit: Self::Unit) -> usize;
+    /// Whether the cube of a point is odd. It is raised by 1/64 of a cube along an axis, by 1/1024 along the others.
+    fn is_odd(point: Self::Point, across: usize, checker: &Checker) -> bool;
 }
 
 /// Whether a Q30 triple has length 1 within 2^-8, so that formats that hold less than 2 hold it.

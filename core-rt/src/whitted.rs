@@ -8,17 +8,14 @@
 use heapless::VecView;
 
 use crate::bvh::{Intersect, Stack};
-use crate::colour::{Albedo, Colour, product};
+use crate::colour::{Albedo, Colour, WHITE, product, towards_white};
 use crate::kernel::{Kernel, Surface};
 use crate::profile::{Need, Profile};
 use crate::record::Lustre;
 use crate::scene::Scene;
-use crate::shade::{ColourOf, RayOf, Shaded, SpaceOf, shade};
-use crate::space::{Scalar, Space};
+use crate::shade::{ColourOf, RayOf, Shaded, SpaceOf, UnitOf, shade};
+use crate::space::Space;
 use crate::stats::{RayKind, Stats};
-
-/// All of a pixel.
-const WHOLE: Albedo = [u16::MAX; 3];
 
 /// Shares below 2^-10 are dropped: a white light of radiance 1 would add a quarter of a gray level.
 const LEAST: u16 = 1 << 6;
@@ -41,31 +38,47 @@ pub(crate) fn radiance<P: Profile>(
     branches: &mut Branches<P::Kernel>,
     stats: &mut impl Stats,
 ) -> ColourOf<P> {
-    let background = || Colour::constant(&scene.header.background);
     if !P::NEEDS.branches() {
-        return shade(scene, ray, hit, stack, stats).map_or_else(background, |shaded| shaded.colour);
+        return match shade(scene, ray, hit, stack, stats) {
+            Some(shaded) => shaded.colour,
+            None => background(scene, ray),
+        };
     }
     let mut total = ColourOf::<P>::default();
-    let (mut ray, mut share, mut depth, mut hit) = (*ray, WHOLE, 0, hit);
+    let (mut ray, mut share, mut depth, mut hit) = (*ray, WHITE, 0, hit);
     branches.clear();
     loop {
-        let shaded = shade(scene, &ray, hit, stack, stats);
-        let colour = shaded.as_ref().map_or_else(background, |shaded| shaded.colour);
-        total = total.plus(colour.reflected(&share));
-        let onward = shaded.map_or([None, None], |shaded| go_on(scene, &ray, hit, &shaded, &share));
+        let onward = if let Some(shaded) = shade(scene, &ray, hit, stack, stats) {
+            total = total.plus(shaded.colour.reflected(&share));
+            go_on(scene, &ray, hit, &shaded, &share)
+        } else {
+            total = total.plus(background(scene, &ray).reflected(&share));
+            [None, None]
+        };
         for (next, share, kind) in onward.into_iter().flatten() {
             if depth < scene.header.max_depth {
                 stats.ray(kind);
                 // There is room for one a level, and the one that is taken up again at once.
                 let _ = branches.push((next, share, depth + 1));
             } else {
-                total = total.plus(background().reflected(&share));
+                total = total.plus(background(scene, &next).reflected(&share));
             }
         }
         let Some(next) = branches.pop() else { return total };
         (ray, share, depth) = next;
         hit = scene.bvh.closest(&ray, stack, stats);
     }
+}
+
+/// What a ray sees that hits nothing.
+fn background<P: Profile>(scene: &Scene<'_, P>, ray: &RayOf<P>) -> ColourOf<P> {
+    let [bottom, top] = &scene.header.background;
+    if !P::NEEDS.has(Need::Sky) {
+        return Colour::constant(bottom);
+    }
+    let [down, up] = SpaceOf::<P>::altitude(P::Kernel::heading(ray));
+    let lit = |radiance, share| ColourOf::<P>::lit(&ColourOf::<P>::light(radiance), share);
+    lit(bottom, down).plus(lit(top, up))
 }
 
 /// The rays that go on from a surface: the one that passes it, and the mirrored one.
@@ -78,57 +91,64 @@ fn go_on<P: Profile>(
 ) -> [GoesOn<P>; 2] {
     let Some(lustre) = shaded.lustre else { return [None, None] };
     let along = P::Kernel::heading(ray);
-    let (surface, normal) = (&shaded.surface, shaded.normal);
+    let surface = &shaded.surface;
     let bent = if P::NEEDS.has(Need::Refraction) && lustre.refracted != [0; 3] {
-        SpaceOf::<P>::refract(along, normal, lustre.eta_q28[usize::from(!surface.front)])
+        let eta_q28 = lustre.eta_q28[usize::from(!surface.front)];
+        turned(shaded, false, |normal| SpaceOf::<P>::refract(along, normal, eta_q28))
     } else {
         None
     };
-    let outside = if surface.front {
-        SpaceOf::<P>::cosine(SpaceOf::<P>::negate(along), normal)
-    } else {
-        bent.map(|(_, behind)| behind)
-    };
-    let [mirror, pass] = shares::<SpaceOf<P>>(lustre, bent.is_some(), outside);
+    let [mirror, pass] = shares(shaded, lustre, bent);
     let leave = |from: &Surface<SpaceOf<P>>, direction, colour: &Albedo, kind| -> GoesOn<P> {
         let share = product(share, colour);
         let is_seen = share.iter().any(|&channel| channel >= LEAST);
         let ray = is_seen.then(|| P::Kernel::leaving(scene.settings, from, direction, hit))??;
         Some((ray, share, kind))
     };
-    let passing = bent.and_then(|(direction, _)| {
+    let passing = bent.and_then(|direction| {
         let behind = Surface { normal: SpaceOf::<P>::negate(surface.normal), ..*surface };
         leave(&behind, direction, &pass, RayKind::Refraction)
     });
-    let mirrored = if P::NEEDS.has(Need::Reflection) {
-        // A normal between corners can mirror into the surface; its own never does.
-        let direction = SpaceOf::<P>::reflect(along, normal);
-        let direction = if SpaceOf::<P>::aligned(direction, surface.normal) {
-            direction
-        } else {
-            SpaceOf::<P>::reflect(along, surface.normal)
-        };
-        leave(surface, direction, &mirror, RayKind::Reflection)
+    let mirrored = if P::NEEDS.has(Need::Reflection) && mirror != [0; 3] {
+        let direction = turned(shaded, true, |normal| Some(SpaceOf::<P>::reflect(along, normal)));
+        direction.and_then(|direction| leave(surface, direction, &mirror, RayKind::Reflection))
     } else {
         None
     };
     [passing, mirrored]
 }
 
-/// What is reflected and what passes, for the cosine on the thinner side. Where nothing can pass, all that would is
-/// reflected.
-fn shares<S: Space>(lustre: &Lustre, passes: bool, outside: Option<Scalar<S>>) -> [Albedo; 2] {
-    let (reflected, refracted) = (lustre.reflected, lustre.refracted);
-    if lustre.flags & Lustre::FRESNEL != 0 {
-        let mirror = match outside {
-            Some(cosine) if passes => S::Colour::share(S::fresnel(cosine, lustre.r0)),
-            _ => u16::MAX,
-        };
-        [product(&reflected, &[mirror; 3]), product(&refracted, &[u16::MAX - mirror; 3])]
-    } else if passes {
-        [reflected, refracted]
-    } else {
-        let sum = |axis: usize| reflected[axis].saturating_add(refracted[axis]);
-        [[sum(0), sum(1), sum(2)], [0; 3]]
+/// A direction turned by the shading normal, where that faces the ray and sends it to the side of the surface that it is
+/// to be on, else by the surface's own.
+fn turned<P: Profile>(
+    shaded: &Shaded<'_, P>,
+    stays: bool,
+    turn: impl Fn(UnitOf<P>) -> Option<UnitOf<P>>,
+) -> Option<UnitOf<P>> {
+    let own = shaded.surface.normal;
+    if P::NEEDS.has(Need::SmoothNormals) && shaded.cosine.is_some() && shaded.normal != own {
+        match turn(shaded.normal) {
+            Some(out) if SpaceOf::<P>::cosine(out, own).is_some() != stays => {}
+            other => return other,
+        }
     }
+    turn(own)
+}
+
+/// What is reflected and what passes. Where nothing can pass, all that would is reflected.
+fn shares<P: Profile>(shaded: &Shaded<'_, P>, lustre: &Lustre, bent: Option<UnitOf<P>>) -> [Albedo; 2] {
+    let Some(bent) = bent else {
+        let mirrored = if lustre.refracted == [0; 3] { &lustre.reflected } else { &lustre.mirrored };
+        return [towards_white(mirrored, shaded.whiteness), [0; 3]];
+    };
+    let (reflected, refracted) = (&lustre.reflected, &lustre.refracted);
+    if !P::NEEDS.has(Need::Schlick) || lustre.flags & Lustre::FRESNEL == 0 {
+        return [*reflected, *refracted];
+    }
+    // The angle is wider on the thinner side.
+    let is_denser_behind = shaded.surface.front == (lustre.eta_q28[0] <= 1 << 28);
+    let cosine =
+        if is_denser_behind { shaded.cosine } else { SpaceOf::<P>::cosine(SpaceOf::<P>::negate(bent), shaded.normal) };
+    let mirror = ColourOf::<P>::share(SpaceOf::<P>::fresnel(cosine.unwrap_or_default(), lustre.r0));
+    [product(reflected, &[mirror; 3]), product(refracted, &[u16::MAX - mirror; 3])]
 }

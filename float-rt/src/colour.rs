@@ -4,7 +4,7 @@ use core_rt::colour::{Albedo, Colour, Radiance, Rgb888, Transfer};
 use core_rt::num::Triple;
 
 use crate::real::Real;
-use crate::vector::add;
+use crate::vector::{add, scale};
 
 /// Linear RGB; 1 is white.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -12,17 +12,27 @@ pub struct RgbF<F>(pub Triple<F>);
 
 impl<F: Real> Colour for RgbF<F> {
     type Cosine = F;
+    type Light = Triple<F>;
+
+    /// The mantissa and the power of two are exact.
+    #[inline]
+    fn light(radiance: &Radiance) -> Triple<F> {
+        let unit = F::ONE.ldexp(i32::from(radiance.exponent) - 16);
+        radiance.mantissa.map(|mantissa| F::from_i32(mantissa.into()) * unit)
+    }
+
+    fn tinted(light: Triple<F>, tint: &Albedo) -> Triple<F> {
+        Self(light).reflected(tint).0
+    }
 
     #[inline]
     fn constant(radiance: &Radiance) -> Self {
-        Self::lit(radiance, F::ONE)
+        Self(Self::light(radiance))
     }
 
-    /// The mantissa and the power of two are exact, so only the product is rounded.
     #[inline]
-    fn lit(radiance: &Radiance, cosine: F) -> Self {
-        let factor = cosine.ldexp(i32::from(radiance.exponent) - 16);
-        Self(radiance.mantissa.map(|mantissa| F::from_i32(mantissa.into()) * factor))
+    fn lit(light: &Triple<F>, cosine: F) -> Self {
+        Self(scale(*light, cosine))
     }
 
     /// Saturates by itself: sums of lights are far from the end of the exponents.
@@ -120,7 +130,7 @@ mod tests {
         let dimmest = Radiance { mantissa: [1 << 15; 3], exponent: -15 };
         assert_eq!(RgbF::constant(&brightest), RgbF([32_767.5f32; 3]));
         assert_eq!(RgbF::constant(&dimmest), RgbF([1.0f32 / 65_536.0; 3]));
-        assert_eq!(RgbF::lit(&brightest, 0.5), RgbF([16_383.75f32; 3]));
+        assert_eq!(RgbF::lit(&RgbF::light(&brightest), 0.5), RgbF([16_383.75f32; 3]));
     }
 
     #[test]

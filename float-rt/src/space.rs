@@ -3,7 +3,8 @@
 use core::marker::PhantomData;
 
 use core_rt::num::Triple;
-use core_rt::space::Space;
+use core_rt::record::{Checker, Reach};
+use core_rt::space::{BRIGHTEST, Space};
 
 use crate::colour::RgbF;
 use crate::real::Real;
@@ -81,7 +82,7 @@ impl<F: Real> Space for FloatSpace<F> {
     }
 
     #[inline]
-    fn refract(along: Triple<F>, normal: Triple<F>, eta_q28: u32) -> Option<(Triple<F>, F)> {
+    fn refract(along: Triple<F>, normal: Triple<F>, eta_q28: u32) -> Option<Triple<F>> {
         let eta = F::from_i64(eta_q28.into()).ldexp(-28);
         let cosine = -dot(along, normal);
         let square = F::ONE - eta * eta * (F::ONE - cosine * cosine);
@@ -89,7 +90,7 @@ impl<F: Real> Space for FloatSpace<F> {
             return None;
         }
         let behind = square.sqrt();
-        Some((add(scale(along, eta), scale(normal, eta * cosine - behind)), behind))
+        Some(add(scale(along, eta), scale(normal, eta * cosine - behind)))
     }
 
     #[inline]
@@ -106,6 +107,38 @@ impl<F: Real> Space for FloatSpace<F> {
         let (x, r0) = (F::ONE - cosine, F::from_i32(r0.into()) / F::from_i32(65_535));
         let square = x * x;
         r0 + (F::ONE - r0) * (square * square * x)
+    }
+
+    fn faded(light: Triple<F>, from: Triple<F>, to: Triple<F>, reach: &Reach) -> Triple<F> {
+        if reach.mantissa == 0 {
+            return light;
+        }
+        let v = sub(to, from);
+        let brighter = F::from_i32(reach.mantissa.into()).ldexp(reach.exponent.into()) / dot(v, v);
+        let brightest = F::from_i32(BRIGHTEST as i32);
+        scale(light, if brighter < brightest { brighter } else { brightest })
+    }
+
+    #[inline]
+    fn altitude(unit: Triple<F>) -> [F; 2] {
+        [F::ONE - unit[1], F::ONE + unit[1]].map(|share| share.ldexp(-1))
+    }
+
+    #[inline]
+    fn longest(unit: Triple<F>) -> usize {
+        let [x, y, z] = unit.map(|c| if c < F::ZERO { -c } else { c });
+        if x >= y && x >= z { 0 } else { usize::from(y < z) + 1 }
+    }
+
+    fn is_odd(point: Triple<F>, across: usize, checker: &Checker) -> bool {
+        let cubes = |q63: u64| F::from_i64((q63 >> 1) as i64).ldexp(-62);
+        let step = cubes(checker.step_q63).ldexp(8);
+        let parity = |axis: usize| {
+            let raised = F::ONE.ldexp(if axis == across { -6 } else { -10 });
+            let half = ((point[axis] * step + cubes(checker.start_q63[axis])) + raised).floor().ldexp(-1);
+            half != half.floor()
+        };
+        parity(0) ^ parity(1) ^ parity(2)
     }
 }
 

@@ -15,7 +15,7 @@ pub use unsupported::{Unsupported, missing};
 use core_rt::arithmetic::Knobs;
 use core_rt::bvh::Child;
 use core_rt::kernel::{Bounds, Kernel};
-use core_rt::record::{Lustre, Material};
+use core_rt::record::Material;
 use thiserror::Error;
 
 use crate::grid::{Grid, GridError, Snapped};
@@ -161,20 +161,13 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
         let material = materials[model.triangles[id as usize].material as usize];
         K::triangle(settings, &snapped.corners(id), material).expect("a triangle that the grid and the kernel hold")
     };
-    let mut lustres: Vec<Lustre> = Vec::new();
+    let (mut lustres, mut checkers) = (Vec::new(), Vec::new());
     let used: Vec<Material> = used
         .iter()
         .map(|&m| {
             let material = &model.materials[m as usize];
-            // Materials often share one, and there are at most as many as materials.
-            let lustre = lustre::lustre(material).map_or(0, |lustre| {
-                let place = lustres.iter().position(|&known| known == lustre).unwrap_or_else(|| {
-                    lustres.push(lustre);
-                    lustres.len() - 1
-                });
-                place as u16 + 1
-            });
-            header::material(material, lustre)
+            let lustre = shared(&mut lustres, lustre::lustre(material));
+            header::material(material, lustre, shared(&mut checkers, header::checker(material, &grid)))
         })
         .collect();
     let blob = layout::write::<K>(
@@ -190,9 +183,21 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
             ids: &ids,
             materials: &used,
             lustres: &lustres,
+            checkers: &checkers,
         },
     )?;
     Ok(Prepared { blob, degenerates, grid })
+}
+
+/// The number of a record and 1, which is added where there is none like it; 0 for none. Materials often share one.
+fn shared<T: PartialEq>(records: &mut Vec<T>, record: Option<T>) -> u16 {
+    record.map_or(0, |record| {
+        let place = records.iter().position(|known| *known == record).unwrap_or_else(|| {
+            records.push(record);
+            records.len() - 1
+        });
+        place as u16 + 1
+    })
 }
 
 /// The materials that triangles refer to, and the new number of each old one.

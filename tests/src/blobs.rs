@@ -4,7 +4,7 @@ use core_rt::blob::{Header, MAGIC, PREFIX_SIZE, Prefix, TRAILER_SIZE, VERSION, c
 use core_rt::colour::Rgb888;
 use core_rt::kernel::{Kernel, Vertices};
 use core_rt::profile::{Full, Need};
-use core_rt::record::{Light, Lustre, Material, Record};
+use core_rt::record::{Checker, Light, Lustre, Material, Record};
 use core_rt::render::{Tile, Workspace, render_tile};
 use core_rt::scene::{MAX_BRANCHES, MAX_DEPTH, Scene};
 use core_rt::space::Space;
@@ -33,6 +33,8 @@ pub struct Draft<K: Kernel> {
     pub materials: Vec<Material>,
     /// What is more than matt of them.
     pub lustres: Vec<Lustre>,
+    /// See the document.
+    pub checkers: Vec<Checker>,
     /// Lights.
     pub lights: Vec<Light>,
 }
@@ -61,6 +63,7 @@ impl<K: Kernel> Draft<K> {
             normals: take(&mut rest, counts.normals)?,
             materials: take(&mut rest, counts.materials)?,
             lustres: take(&mut rest, counts.lustres)?,
+            checkers: take(&mut rest, counts.checkers)?,
             lights: take(&mut rest, counts.lights)?,
         })
     }
@@ -79,6 +82,7 @@ impl<K: Kernel> Draft<K> {
         put(&mut bytes, &self.normals);
         put(&mut bytes, &self.materials);
         put(&mut bytes, &self.lustres);
+        put(&mut bytes, &self.checkers);
         put(&mut bytes, &self.lights);
         bytes.extend([0; TRAILER_SIZE]);
         repaired(&bytes, K::ID)

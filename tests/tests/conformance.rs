@@ -70,7 +70,7 @@ where
         let Some(prepared) = self.ray(ray) else { return Err("the kernel takes the direction for zero".into()) };
         let bvh = self.view();
         let hit = bvh.closest(&prepared, &mut stack, &mut NoStats);
-        let any = bvh.any(&prepared, &mut stack, &mut NoStats);
+        let any = bvh.any(&prepared, &mut stack, &mut NoStats, |_| true);
         if any != expected.is_some() {
             return Err(format!("any is {any}"));
         }

@@ -10,7 +10,7 @@ use crate::bvh::{Bvh, Child};
 use crate::colour::{Radiance, Transfer};
 use crate::kernel::{Bounds, Kernel};
 use crate::profile::{Need, Needs};
-use crate::record::{Light, Lustre, Material};
+use crate::record::{Light, Lustre, Material, Reach};
 use crate::scene::{MAX_DEPTH, Shading};
 use crate::space::{Space, is_unit_q30};
 
@@ -38,13 +38,16 @@ pub(crate) fn check<K: Kernel>(
     }
     let radiances = shading.materials.iter().map(|m| &m.emission).chain(shading.lights.iter().map(|l| &l.radiance));
     let in_range = radiances
-        .chain([&header.background, &header.ambient])
+        .chain(&header.background)
+        .chain([&header.ambient])
         .all(|radiance| Radiance::EXPONENTS.contains(&radiance.exponent));
     let lights = shading.lights.iter().all(light_is_valid);
     let lustres = shading.lustres.iter().all(lustre_is_valid)
         && shading.materials.iter().all(|m: &Material| usize::from(m.lustre) <= shading.lustres.len());
+    let checkers = shading.checkers.iter().all(|checker| checker.reserved == 0)
+        && shading.materials.iter().all(|m: &Material| usize::from(m.checker) <= shading.checkers.len());
     let normals = shading.normals.iter().all(K::Space::is_unit);
-    if !(in_range && lights && lustres && normals) {
+    if !(in_range && lights && lustres && checkers && normals) {
         return Err(BlobError::Shading);
     }
     match used(header, shading).first_missing_in(header.needs) {
@@ -74,7 +77,7 @@ fn origins<K: Kernel>(header: &Header, bvh: &Bvh<'_, K>, shading: &Shading<'_, K
 
 /// What light is bent by must leave room in the products.
 fn lustre_is_valid(lustre: &Lustre) -> bool {
-    lustre.flags & !(Lustre::PHONG | Lustre::FRESNEL) == 0
+    lustre.flags & !(Lustre::PHONG | Lustre::FRESNEL | Lustre::METAL) == 0
         && lustre.gain <= 15
         && lustre.reserved == 0
         && !lustre.eta_q28.contains(&0)
@@ -82,6 +85,10 @@ fn lustre_is_valid(lustre: &Lustre) -> bool {
 
 /// A light must be of a known kind.
 fn light_is_valid(light: &Light) -> bool {
+    let Reach { mantissa, exponent } = light.reach;
+    if !(mantissa == 0 || mantissa >> 15 == 1) || !Reach::EXPONENTS.contains(&exponent) {
+        return false;
+    }
     match light.kind {
         Light::POINT => true,
         Light::DIRECTIONAL => is_unit_q30(light.place),
@@ -105,6 +112,11 @@ fn used<K: Kernel>(header: &Header, shading: &Shading<'_, K>) -> Needs {
         .with(Need::Phong, shading.lustres.iter().any(|l| !l.specular_is_black() && l.flags & Lustre::PHONG != 0))
         .with(Need::Reflection, header.max_depth > 0 && shading.lustres.iter().any(|l| l.reflected != [0; 3]))
         .with(Need::Refraction, header.max_depth > 0 && shading.lustres.iter().any(|l| l.refracted != [0; 3]))
+        .with(Need::Schlick, shading.lustres.iter().any(|l| l.flags & (Lustre::FRESNEL | Lustre::METAL) != 0))
+        .with(Need::TintedShadow, !shading.lights.is_empty() && shading.lustres.iter().any(|l| l.shadow != [0; 3]))
+        .with(Need::Checker, !shading.checkers.is_empty())
+        .with(Need::Falloff, shading.lights.iter().any(|l| l.kind == Light::POINT && l.reach.mantissa != 0))
+        .with(Need::Sky, header.background[0] != header.background[1])
 }
 
 /// A node whose second child is still to be checked, and that child's level: a word for both, since nothing that a chip

@@ -55,6 +55,8 @@ pub struct Counts {
     pub materials: u32,
     /// What is more than matt of them.
     pub lustres: u32,
+    /// Patterns of cubes.
+    pub checkers: u32,
     /// Lights.
     pub lights: u32,
 }
@@ -77,8 +79,8 @@ pub struct Header {
     pub size: [u16; 2],
     /// The camera.
     pub camera: CameraHeader,
-    /// What a ray that hits nothing sees.
-    pub background: Radiance,
+    /// What a ray that hits nothing sees: straight down, and straight up.
+    pub background: [Radiance; 2],
     /// Light that reaches everything.
     pub ambient: Radiance,
     /// How pixels are encoded.

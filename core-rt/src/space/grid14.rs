@@ -5,9 +5,10 @@
 use fixed::types::{I2F14, U16F16};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-use super::{Space, fresnel_q16, is_unit_q30};
-use crate::colour::Rgb16;
-use crate::num::{Triple, bits, dot, inverse_sqrt_u32, power, round_shift, sqrt_u32, sub};
+use super::{Space, faded, fresnel_q16, is_unit_q30, raised_q31};
+use crate::colour::{Radiance, Rgb16};
+use crate::num::{Triple, bits, dot, inverse_sqrt_u32, power, reciprocal, round_shift, sqrt_u32, sub};
+use crate::record::{Checker, Reach};
 
 /// The space of 14-bit grids.
 #[derive(Clone, Copy, Debug, Default)]
@@ -116,7 +117,7 @@ impl Space for Grid14 {
     /// The part along the surface is (d + c n) eta, c = -(d . n), and the rest is left for the normal: sqrt(1 - part^2).
     /// eta is below 16, so 16 bits in Q12, and its product with what is at most 1 in Q14 below 2^31.
     #[inline]
-    fn refract(along: Self::Unit, normal: Self::Unit, eta_q28: u32) -> Option<(Self::Unit, U16F16)> {
+    fn refract(along: Self::Unit, normal: Self::Unit, eta_q28: u32) -> Option<Self::Unit> {
         let eta_q12 = (eta_q28 >> 16) as i32;
         let cosine_q14 = -round_shift(dot_q28(along, normal), 14);
         let part = |d: I2F14, n: I2F14| {
@@ -130,8 +131,7 @@ impl Space for Grid14 {
         let square_q28: u32 = part.iter().map(|&c| (c * c) as u32).sum(); // at most 3 * 2^30
         let behind_q14 = sqrt_u32((1u32 << 28).checked_sub(square_q28)?) as i32;
         let bent = |part: i32, n: I2F14| narrow(part - round_shift(behind_q14 * bits_of(n), 14));
-        let unit = [bent(part[0], normal[0]), bent(part[1], normal[1]), bent(part[2], normal[2])];
-        Some((unit, U16F16::from_bits((behind_q14 as u32).min(1 << 14) << 2)))
+        Some([bent(part[0], normal[0]), bent(part[1], normal[1]), bent(part[2], normal[2])])
     }
 
     #[inline]
@@ -154,6 +154,48 @@ impl Space for Grid14 {
     #[inline]
     fn fresnel(cosine: U16F16, r0: u16) -> U16F16 {
         U16F16::from_bits(fresnel_q16(cosine.to_bits(), r0.into()))
+    }
+
+    /// With the difference scaled to 15 bits its square s is in [2^28, 3 * 2^30), and within 2^-13 of true. The reciprocal of
+    /// s / 2 is `mantissa / 2^(16 + log2_d)`, low by up to 2^-14 and high by 2^-15 since s is truncated to 16 bits.
+    #[inline]
+    fn faded(light: Radiance, from: Self::Point, to: Self::Point, reach: &Reach) -> Radiance {
+        let v = sub(to, from);
+        let bits = bits(v);
+        if bits == 0 || reach.mantissa == 0 {
+            return light;
+        }
+        let v = if bits > 15 { v.map(|c| round_shift(c >> 1, bits - 16)) } else { v.map(|c| c << (15 - bits)) };
+        let square: u32 = v.iter().map(|&c| (c * c) as u32).sum();
+        let r = reciprocal(square >> 1);
+        let factor_q32 = u32::from(reach.mantissa) * r.mantissa;
+        let units = 2 * (15 - bits as i32 + POINT_BITS as i32);
+        faded(light, factor_q32, units + i32::from(reach.exponent) + 15 - r.log2_d as i32)
+    }
+
+    #[inline]
+    fn altitude(unit: Self::Unit) -> [U16F16; 2] {
+        let up_q16 = ((1 << 14) + bits_of(unit[1])).clamp(0, 1 << 15) as u32 * 2;
+        [(1 << 16) - up_q16, up_q16].map(U16F16::from_bits)
+    }
+
+    #[inline]
+    fn longest(unit: Self::Unit) -> usize {
+        let [x, y, z] = unit.map(|c| bits_of(c).unsigned_abs());
+        if x >= y && x >= z { 0 } else { usize::from(y < z) + 1 }
+    }
+
+    /// A cube is 2^31 in a word that wraps, so that whether one is odd is its highest bit: one multiplication an axis. A point
+    /// is below 2^19, and half a unit of the step makes it 2^-13 of a cube.
+    #[inline]
+    fn is_odd(point: Self::Point, across: usize, checker: &Checker) -> bool {
+        let step_q31 = ((checker.step_q63 >> (31 - (8 - POINT_BITS))) + 1 >> 1) as u32;
+        let place = |axis: usize| {
+            let start_q31 = (checker.start_q63[axis] >> 32) as u32;
+            let moved = (point[axis] as u32).wrapping_mul(step_q31).wrapping_add(start_q31);
+            moved.wrapping_add(raised_q31(axis == across))
+        };
+        (place(0) ^ place(1) ^ place(2)) >> 31 == 1
     }
 }
 

@@ -10,9 +10,10 @@ use fixed::types::U16F16;
 use fixed::types::extra::{LeEqU32, U30, U31};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-use super::{Space, fresnel_q16, is_unit_q30};
-use crate::colour::Rgb16;
+use super::{Space, faded, fresnel_q16, is_unit_q30, raised_q31};
+use crate::colour::{Radiance, Rgb16};
 use crate::num::{Triple, bits, dot, inverse_sqrt_u64, power, round_shift, sqrt_u64, sub};
+use crate::record::{Checker, Reach};
 
 /// The space of 29-bit grids, with `F` (30 or 31) fractional bits in unit vectors and barycentrics.
 #[derive(Clone, Copy, Debug, Default)]
@@ -154,7 +155,7 @@ impl<F: Fraction> Space for Grid29With<F> {
 
     /// As in 14 bits; eta is below 16, and its product with what is at most 1 in Q30 below 2^62.
     #[inline]
-    fn refract(along: Self::Unit, normal: Self::Unit, eta_q28: u32) -> Option<(Self::Unit, U16F16)> {
+    fn refract(along: Self::Unit, normal: Self::Unit, eta_q28: u32) -> Option<Self::Unit> {
         let (d, n) = (q30(along), q30(normal));
         let cosine_q30 = -round_shift(dot(d, n), 30);
         let part = |d: i64, n: i64| {
@@ -168,8 +169,7 @@ impl<F: Fraction> Space for Grid29With<F> {
         let square_q60: u64 = part.iter().map(|&c| (c * c) as u64).sum(); // at most 3 * 2^62
         let behind_q30 = sqrt_u64((1u64 << 60).checked_sub(square_q60)?) as i64;
         let bent = |part: i64, n: i64| from_q30(part - round_shift(behind_q30 * n, 30));
-        let unit = [bent(part[0], n[0]), bent(part[1], n[1]), bent(part[2], n[2])];
-        Some((unit, U16F16::from_bits(round_shift(behind_q30, 14).min(1 << 16) as u32)))
+        Some([bent(part[0], n[0]), bent(part[1], n[1]), bent(part[2], n[2])])
     }
 
     #[inline]
@@ -188,6 +188,46 @@ impl<F: Fraction> Space for Grid29With<F> {
     #[inline]
     fn fresnel(cosine: U16F16, r0: u16) -> U16F16 {
         U16F16::from_bits(fresnel_q16(cosine.to_bits(), r0.into()))
+    }
+
+    /// As in 14 bits: with the difference scaled to 31 bits its square is in [2^60, 3 * 2^62), and the quotient in
+    /// (2^22, 2^27], within 2^-22 of true.
+    #[inline]
+    fn faded(light: Radiance, from: Self::Point, to: Self::Point, reach: &Reach) -> Radiance {
+        let v = sub(to, from);
+        let bits = bits(v);
+        if bits == 0 || reach.mantissa == 0 {
+            return light;
+        }
+        let v = if bits > 31 { v.map(|c| round_shift(c, bits - 31)) } else { v.map(|c| c << (31 - bits)) };
+        let square: u64 = v.iter().map(|&c| (c * c) as u64).sum();
+        // mantissa / square in Q71; `max` says that the denominator is not 0.
+        let factor = ((u64::from(reach.mantissa) << 47) / (square >> 24).max(1)) as u32;
+        let units = 2 * (31 - bits as i32 + POINT_BITS as i32);
+        faded(light, factor, units + i32::from(reach.exponent) + 32 - 71)
+    }
+
+    #[inline]
+    fn altitude(unit: Self::Unit) -> [U16F16; 2] {
+        let y_q16 = round_shift(i64::from(unit[1].to_bits()), F::U32 - 16);
+        let up_q17 = ((1 << 16) + y_q16).clamp(0, 1 << 17) as u32;
+        [(1 << 16) - (up_q17 >> 1), up_q17 >> 1].map(U16F16::from_bits)
+    }
+
+    #[inline]
+    fn longest(unit: Self::Unit) -> usize {
+        let [x, y, z] = unit.map(|c| c.to_bits().unsigned_abs());
+        if x >= y && x >= z { 0 } else { usize::from(y < z) + 1 }
+    }
+
+    /// A cube is 2^63 in a word that wraps. A point is below 2^38: half a unit of the step makes it 2^-26 of a cube.
+    #[inline]
+    fn is_odd(point: Self::Point, across: usize, checker: &Checker) -> bool {
+        let place = |axis: usize| {
+            let moved = (point[axis] as u64).wrapping_mul(checker.step_q63).wrapping_add(checker.start_q63[axis]);
+            moved.wrapping_add(u64::from(raised_q31(axis == across)) << 32)
+        };
+        (place(0) ^ place(1) ^ place(2)) >> 63 == 1
     }
 }
 

@@ -4,13 +4,13 @@ use core_rt::camera::CameraHeader;
 use core_rt::colour::{Albedo, Radiance, Transfer};
 use core_rt::kernel::Kernel;
 use core_rt::profile::{Need, Needs};
-use core_rt::record::{Light, Lustre, Material};
+use core_rt::record::{Checker, Light, Lustre, Material, Reach};
 use core_rt::scene::MAX_BRANCHES;
 use glam::DVec3;
 
 use super::lustre;
 use crate::grid::Grid;
-use crate::model::{self, LightKind, Model};
+use crate::model::{self, Background, Falloff, LightKind, Model};
 
 /// Bits below a direction's unit in camera coefficients: at 2^14 pixels a side, the rounding of a step adds up to a
 /// quarter of a unit.
@@ -65,9 +65,24 @@ pub(super) fn radiance(linear: DVec3) -> Radiance {
 }
 
 /// A material as the blob has it.
-pub(super) fn material(material: &model::Material, lustre: u16) -> Material {
+pub(super) fn material(material: &model::Material, lustre: u16, checker: u16) -> Material {
     let albedo = lustre::albedo(material.colour * lustre::diffuse_weight(material));
-    Material { emission: radiance(material.emission), albedo, lustre }
+    Material { emission: radiance(material.emission), albedo, lustre, checker }
+}
+
+/// A pattern of cubes as the blob has it. What is finer than a 256th of a grid unit is drawn as fine as that.
+pub(super) fn checker(material: &model::Material, grid: &Grid) -> Option<Checker> {
+    let model::Checker { size, other } = material.checker?;
+    let q63 = libm::exp2(63.0);
+    let step = 1.0 / (size * grid.scale * 256.0);
+    let start = grid.origin / size;
+    Some(Checker {
+        step_q63: (step * q63).min(q63) as u64,
+        // Modulo 2, in which a u64 wraps.
+        start_q63: start.to_array().map(|c| ((c - 2.0 * (c / 2.0).floor()) * q63) as u64),
+        other: lustre::albedo(other * lustre::diffuse_weight(material)),
+        reserved: 0,
+    })
 }
 
 /// A unit vector in Q30.
@@ -82,7 +97,32 @@ pub(super) fn light(light: &model::Light, grid: &Grid) -> Light {
         LightKind::Point(position) => (Light::POINT, grid.place(position)),
         LightKind::Directional(direction) => (Light::DIRECTIONAL, unit_q30(-direction)),
     };
-    Light { kind, place, radiance: radiance(light.radiance) }
+    let reach = match (light.kind, light.falloff) {
+        (LightKind::Point(_), Falloff::InverseSquare { reach }) => square(reach * grid.scale),
+        _ => Reach::default(),
+    };
+    Light { kind, place, radiance: radiance(light.radiance), reach }
+}
+
+/// The square of a distance in grid units, above 0.
+fn square(distance: f64) -> Reach {
+    let (fraction, exponent) = libm::frexp(distance);
+    // In [1/4, 1).
+    let (fraction, exponent) = match fraction * fraction {
+        square if square < 0.5 => (square * 2.0, 2 * exponent - 1),
+        square => (square, 2 * exponent),
+    };
+    let (least, most) = (i32::from(*Reach::EXPONENTS.start()), i32::from(*Reach::EXPONENTS.end()));
+    let mantissa = (fraction * f64::from(1u32 << 16) + 0.5).min(65_535.0) as u16;
+    Reach { mantissa, exponent: (exponent - 16).clamp(least, most) as i16 }
+}
+
+/// What a ray that hits nothing sees: straight down, and straight up.
+pub(super) fn background(model: &Model) -> [Radiance; 2] {
+    match model.background {
+        Background::Colour(colour) => [radiance(colour); 2],
+        Background::Sky { bottom, top } => [bottom, top].map(radiance),
+    }
 }
 
 /// What the model needs, widths of indices aside.
@@ -90,6 +130,10 @@ pub(super) fn needs(model: &Model, materials: &[Material], lustres: &[Lustre]) -
     let shines =
         |phong: bool| lustres.iter().any(|l| !l.specular_is_black() && (l.flags & Lustre::PHONG != 0) == phong);
     let goes_on = |colour: fn(&Lustre) -> Albedo| max_depth(model) > 0 && lustres.iter().any(|l| colour(l) != [0; 3]);
+    let [bottom, top] = background(model);
+    let fades = |light: &model::Light| {
+        matches!((light.kind, light.falloff), (LightKind::Point(_), Falloff::InverseSquare { .. }))
+    };
     let any_light = |wanted: fn(&LightKind) -> bool| model.lights.iter().any(|light| wanted(&light.kind));
     Needs::NONE
         .with(Need::PointLight, any_light(|kind| matches!(kind, LightKind::Point(_))))
@@ -103,6 +147,11 @@ pub(super) fn needs(model: &Model, materials: &[Material], lustres: &[Lustre]) -
         .with(Need::Phong, shines(true))
         .with(Need::Reflection, goes_on(|l| l.reflected))
         .with(Need::Refraction, goes_on(|l| l.refracted))
+        .with(Need::Schlick, lustres.iter().any(|l| l.flags & (Lustre::FRESNEL | Lustre::METAL) != 0))
+        .with(Need::TintedShadow, !model.lights.is_empty() && lustres.iter().any(|l| l.shadow != [0; 3]))
+        .with(Need::Checker, materials.iter().any(|m| m.checker != 0))
+        .with(Need::Falloff, model.lights.iter().any(fades))
+        .with(Need::Sky, bottom != top)
 }
 
 /// From how many surfaces a ray may go on.

@@ -4,7 +4,7 @@ use core_rt::arithmetic::Arithmetic;
 use core_rt::blob::{Counts, Header, MAGIC, PREFIX_SIZE, Prefix, SourceGrid, TRAILER_SIZE, VERSION, crc32};
 use core_rt::kernel::Kernel;
 use core_rt::profile::Need;
-use core_rt::record::{Lustre, Material, Record};
+use core_rt::record::{Checker, Lustre, Material, Record};
 use core_rt::section::ALIGN;
 use core_rt::space::Space;
 use zerocopy::IntoBytes;
@@ -49,6 +49,7 @@ pub(super) struct Parts<'a, N, T> {
     pub(super) ids: &'a [u32],
     pub(super) materials: &'a [Material],
     pub(super) lustres: &'a [Lustre],
+    pub(super) checkers: &'a [Checker],
 }
 
 /// Memory of a blob's size, filled section by section: records go straight to their place.
@@ -108,7 +109,7 @@ pub(super) fn write<K: Kernel>(
         // Pictures are at most 2^14 a side: the importer's bound.
         size: model.render.size.map(|s| s.min(u16::MAX.into()) as u16),
         camera: header::camera::<K>(model, parts.plain.fov_y, grid),
-        background: header::radiance(parts.plain.background),
+        background: header::background(model),
         ambient: header::radiance(model.render.ambient),
         transfer: header::transfer(model.render.transfer),
         max_depth: if needs.branches() { header::max_depth(model) } else { 0 },
@@ -121,6 +122,7 @@ pub(super) fn write<K: Kernel>(
             normals: normals.len() as u32,
             materials: parts.materials.len() as u32,
             lustres: parts.lustres.len() as u32,
+            checkers: parts.checkers.len() as u32,
             lights: lights.len() as u32,
         },
         file_triangles: model.triangles.len() as u32,
@@ -139,6 +141,7 @@ pub(super) fn write<K: Kernel>(
         size_of_val(normals.as_slice()),
         size_of_val(parts.materials),
         size_of_val(parts.lustres),
+        size_of_val(parts.checkers),
         size_of_val(lights.as_slice()),
         TRAILER_SIZE,
     ]
@@ -164,6 +167,7 @@ pub(super) fn write<K: Kernel>(
     writer.records(normals.into_iter());
     writer.records(parts.materials.iter().copied());
     writer.records(parts.lustres.iter().copied());
+    writer.records(parts.checkers.iter().copied());
     writer.records(lights.into_iter());
     Ok(writer.close())
 }

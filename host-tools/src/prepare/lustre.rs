@@ -6,9 +6,6 @@ use glam::DVec3;
 
 use crate::model::{Lobe, Material, MaterialKind, Specular};
 
-/// The exponent of highlights that have none.
-const EXPONENT: u32 = 50;
-
 /// The diffuse share of a material.
 pub(super) fn diffuse_weight(material: &Material) -> f64 {
     match (material.weights, material.kind) {
@@ -21,32 +18,33 @@ pub(super) fn diffuse_weight(material: &Material) -> f64 {
 /// The lustre of a material; `None` for a matt one.
 pub(super) fn lustre(material: &Material) -> Option<Lustre> {
     let Material { kind, colour, ior, .. } = *material;
-    let shines = material.specular.is_some() || kind == MaterialKind::Metal;
-    let specular = material.specular.unwrap_or(Specular { lobe: Lobe::BlinnPhong, exponent: EXPONENT, colour });
-    // Shares of specular, reflected and refracted light, and whether Schlick's law divides the last two.
-    let (shares, fresnel) = match (material.weights, kind) {
-        (Some([_, ks, kr, kt]), _) => ([ks, kr, kt], false),
-        (None, MaterialKind::Lambert) => ([1.0, 0.0, 0.0], false),
-        (None, MaterialKind::Metal | MaterialKind::Mirror) => ([1.0, 1.0, 0.0], false),
-        (None, MaterialKind::Dielectric) => ([1.0, 1.0, 1.0], true),
+    // Shares of specular, reflected and refracted light, and where Schlick's law has a say.
+    let ([ks, kr, kt], schlick) = match (material.weights, kind) {
+        (Some([_, ks, kr, kt]), _) => ([ks, kr, kt], 0),
+        (None, MaterialKind::Lambert) => ([1.0, 0.0, 0.0], 0),
+        (None, MaterialKind::Metal) => ([1.0, 1.0, 0.0], Lustre::METAL),
+        (None, MaterialKind::Mirror) => ([1.0, 1.0, 0.0], 0),
+        (None, MaterialKind::Dielectric) => ([1.0, 1.0, 1.0], Lustre::FRESNEL),
     };
-    let [ks, kr, kt] = shares;
-    let ks = if shines { ks } else { 0.0 };
+    let highlight = material.specular.unwrap_or(Specular { lobe: Lobe::BlinnPhong, exponent: 1, colour: DVec3::ZERO });
     let mirrored = match kind {
         MaterialKind::Metal | MaterialKind::Mirror => colour,
-        MaterialKind::Lambert if material.specular.is_some() => specular.colour,
+        MaterialKind::Lambert if material.specular.is_some() => highlight.colour,
         MaterialKind::Lambert | MaterialKind::Dielectric => DVec3::ONE,
     };
     let passed = if kind == MaterialKind::Dielectric { colour } else { DVec3::ONE };
-    let (tint, gain) = scaled(specular.colour * ks);
+    let (tint, gain) = scaled(highlight.colour * ks);
+    let whole = if schlick == Lustre::FRESNEL { 1.0 } else { kr + kt };
     let lustre = Lustre {
         eta_q28: [eta(1.0 / ior), eta(ior)],
         specular: tint,
         reflected: albedo(mirrored * kr),
+        mirrored: albedo(mirrored * whole),
         refracted: albedo(passed * kt),
-        exponent_q2: (specular.exponent.min(10_000) * 4) as u16,
+        shadow: if material.tinted_shadow { albedo(passed * kt) } else { [0; 3] },
+        exponent_q2: (highlight.exponent.min(10_000) * 4) as u16,
         gain,
-        flags: if specular.lobe == Lobe::Phong { Lustre::PHONG } else { 0 } | if fresnel { Lustre::FRESNEL } else { 0 },
+        flags: if highlight.lobe == Lobe::Phong { Lustre::PHONG } else { 0 } | schlick,
         r0: unit(((ior - 1.0) / (ior + 1.0)).powi(2)),
         reserved: 0,
     };

@@ -2,10 +2,9 @@
 //!
 //! In one place, so that each goes from here when kernels learn it.
 
-use glam::DVec3;
 use thiserror::Error;
 
-use crate::model::{Background, Falloff, Material, MaterialKind, Model, Projection};
+use crate::model::{Material, Model, Projection};
 
 /// Something that no kernel has yet, and without which the picture would be another one.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
@@ -16,12 +15,6 @@ pub enum Unsupported {
     /// Parallel camera rays.
     #[error("orthographic projection is not supported yet by any kernel; use \"perspective\"")]
     Orthographic,
-    /// A light that fades.
-    #[error("inverse-square falloff is not supported yet by any kernel; use \"none\"")]
-    Falloff,
-    /// A background that is not the same everywhere.
-    #[error("sky is not supported yet by any kernel; give a background colour")]
-    Sky,
 }
 
 /// What kernels have one form of.
@@ -29,8 +22,6 @@ pub enum Unsupported {
 pub(super) struct Plain {
     /// Vertical field of view, radians.
     pub(super) fov_y: f64,
-    /// What a ray that hits nothing sees.
-    pub(super) background: DVec3,
 }
 
 /// A model in the form that kernels have.
@@ -41,16 +32,10 @@ pub(super) fn plain(model: &Model) -> Result<Plain, Unsupported> {
     if !model.spheres.is_empty() {
         return Err(Unsupported::Spheres);
     }
-    if model.lights.iter().any(|light| light.falloff != Falloff::None) {
-        return Err(Unsupported::Falloff);
-    }
     let Projection::Perspective { fov_y } = model.camera.projection else {
         return Err(Unsupported::Orthographic);
     };
-    let Background::Colour(background) = model.background else {
-        return Err(Unsupported::Sky);
-    };
-    Ok(Plain { fov_y, background })
+    Ok(Plain { fov_y })
 }
 
 /// What of a model every kernel leaves out: a line of text each.
@@ -76,19 +61,18 @@ pub fn missing(model: &Model) -> Vec<String> {
 
 /// What a material has that a Lambert surface of one colour has not.
 fn extras(material: &Material) -> Vec<&'static str> {
-    let extras = [
-        (material.kind == MaterialKind::Metal && material.weights.is_none(), "metal towards white at grazing angles"),
-        (material.tinted_shadow, "tinted shadow"),
-        (material.checker.is_some(), "checker"),
-        (material.texture.is_some(), "texture"),
-    ];
+    let extras = [(material.texture.is_some(), "texture")];
     extras.into_iter().filter(|&(given, _)| given).map(|(_, name)| name).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Checker, Light, LightKind, RenderSettings, Specular, Sphere};
+    use std::sync::Arc;
+
+    use glam::DVec3;
+
+    use crate::model::{RenderSettings, Sphere, Texture};
 
     #[test]
     fn what_would_be_another_scene_is_refused() {
@@ -97,34 +81,23 @@ mod tests {
             change(&mut model);
             plain(&model).unwrap_err()
         };
-        assert_eq!(plain(&Model::default()).map(|plain| plain.background), Ok(DVec3::ZERO));
+        assert!(plain(&Model::default()).is_ok());
         let sphere = Sphere { centre: DVec3::ZERO, radius: 1.0, material: 0 };
         assert_eq!(refusal(&|m| m.spheres.push(sphere)), Unsupported::Spheres);
         let parallel = Projection::Orthographic { height: 1.0 };
         assert_eq!(refusal(&|m| m.camera.projection = parallel), Unsupported::Orthographic);
-        let sky = Background::Sky { bottom: DVec3::ZERO, top: DVec3::ONE };
-        assert_eq!(refusal(&|m| m.background = sky), Unsupported::Sky);
-        let falloff = Falloff::InverseSquare { reach: 1.0 };
-        let lamp = Light { falloff, ..Light::new(LightKind::Point(DVec3::Y), DVec3::ONE) };
-        assert_eq!(refusal(&|m| m.lights.push(lamp)), Unsupported::Falloff);
     }
 
     #[test]
     fn what_is_left_out_is_said() {
         assert_eq!(missing(&Model::default()), Vec::<String>::new());
-        let specular = Specular { lobe: Default::default(), exponent: 50, colour: DVec3::ONE };
-        let rich = Material {
+        let textured = Material {
             name: "a\nb".into(),
-            kind: MaterialKind::Dielectric,
-            specular: Some(specular),
-            weights: Some([0.0, 0.5, 0.1, 0.8]),
-            checker: Some(Checker { size: 1.0, other: DVec3::ZERO }),
+            texture: Some(Arc::new(Texture { size: [1, 1], texels: vec![[0; 3]] })),
             ..Material::default()
         };
-        let plain = Material { weights: Some([1.0, 0.0, 0.0, 0.0]), ..Material::default() };
-        let glossy = Material { name: "c".into(), specular: Some(specular), ..Material::default() };
         let model = Model {
-            materials: vec![rich, plain, glossy],
+            materials: vec![textured, Material::default()],
             colours: vec![DVec3::ONE],
             render: RenderSettings { samples: 4, ..RenderSettings::default() },
             ..Model::default()
@@ -132,8 +105,7 @@ mod tests {
         let expected = [
             "samples: more than one a pixel is not supported yet; drawn with one",
             "colours of vertices are not supported yet, and are left out",
-            "material `a\\nb` is drawn without what is not supported yet: dielectric, transparency, weights, checker",
-            "material `c` is drawn without what is not supported yet: highlights",
+            "material `a\\nb` is drawn without what is not supported yet: texture",
         ];
         assert_eq!(missing(&model), expected);
     }

@@ -151,7 +151,7 @@ fn self_hits<K: Kernel>(blob: &Blob) -> SelfHits {
             let Some(shadow) = K::segment(scene.settings, &surface, light.place, NONE) else { continue };
             let mut stack = heapless::Vec::<Waiting<K>, MAX_DEPTH>::new();
             found.rays += 1;
-            found.blocked += u64::from(scene.bvh.any(&shadow, &mut stack, &mut NoStats));
+            found.blocked += u64::from(scene.bvh.any(&shadow, &mut stack, &mut NoStats, |_| true));
         }
         found
     };

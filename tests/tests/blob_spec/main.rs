@@ -2,13 +2,16 @@
 //! the scenes that went in.
 
 mod agree;
+mod looks;
 mod reader;
 
 use agree::agree;
+use std::path::Path;
+
 use glam::DVec3;
 use host_tools::engine;
-use host_tools::import::{Embedded, load_from};
-use host_tools::model::{Light, LightKind, Model, Projection, Transfer, Triangle};
+use host_tools::import::{self, Embedded, load_from};
+use host_tools::model::{Light, LightKind, Lobe, Model, Projection, Transfer, Triangle};
 use host_tools::prepare::{Options, Prepared};
 use reader::{Blob, crc32, read};
 
@@ -28,6 +31,14 @@ fn flat() -> Model {
     model.background = DVec3::new(0.0, 1e-6, 30_000.0).into();
     let kind = LightKind::Directional(DVec3::new(0.3, -2.0, -0.4));
     model.lights.push(Light::new(kind, DVec3::new(3.0, 0.0, 1e-3)));
+    model
+}
+
+/// One of the gallery, of what is said of triangles.
+fn gallery(name: &str) -> Model {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenes/gallery/{name}/scene.toml"));
+    let mut model = import::load(&path).unwrap().model;
+    model.spheres.clear();
     model
 }
 
@@ -70,6 +81,45 @@ fn what_goes_in_is_read_by_the_document() {
         assert!(mixed.corners.contains(&None) && mixed.corners.iter().any(Option::is_some));
         assert!(mixed.header.depth > 5 && mixed.header.needs >> 8 == 0);
         assert!(flat.corners.is_empty() && flat.normals.is_empty());
+    }
+}
+
+#[test]
+fn looks_are_read_by_the_document() {
+    let mut seen = 0;
+    for kernel in KERNELS {
+        for name in ["materials", "glass", "mirrors"] {
+            let mut model = gallery(name);
+            model.materials.iter_mut().for_each(|m| m.tinted_shadow |= name == "glass");
+            let shiny = model.materials.iter_mut().filter_map(|m| m.specular.as_mut());
+            shiny.for_each(|s| s.lobe = if name == "mirrors" { Lobe::Phong } else { Lobe::BlinnPhong });
+            let found = prepared(&model, kernel);
+            assert_eq!(agree(&found, &model), Ok(()), "{kernel} {name}");
+            seen |= found.header.needs;
+
+            let fault = |change: &dyn Fn(&mut Blob)| {
+                let mut other = found.clone();
+                change(&mut other);
+                agree(&other, &model).unwrap_err()
+            };
+            let lustre =
+                usize::from(found.triangles.iter().map(|t| found.materials[t.material as usize].lustre).max().unwrap())
+                    - 1;
+            assert_eq!(fault(&|b| b.lustres[lustre].eta[1] += 2), "index of refraction");
+            assert_eq!(fault(&|b| b.lustres[lustre].flags ^= 1), "flags");
+            assert_eq!(fault(&|b| b.lustres[lustre].colours[2][1] ^= 2), "mirror image of all light");
+            assert_eq!(fault(&|b| b.lustres[lustre].colours[4][2] ^= 2), "shadow");
+            assert_eq!(fault(&|b| b.lights[0].reach.0 ^= 1 << 15), "reach of a light");
+            assert_eq!(fault(&|b| b.header.max_depth += 1), "depth of reflections");
+            if let Some(checker) = found.checkers.first() {
+                assert_eq!(fault(&|b| b.checkers[0].start[2] ^= 1 << 63), "start of cubes");
+                assert_eq!(fault(&|b| b.checkers[0].step = checker.step + (checker.step >> 16)), "size of cubes");
+                assert_eq!(fault(&|b| b.checkers[0].other[0] ^= 2), "colour of odd cubes");
+            }
+        }
+    }
+    for bit in [10, 11, 12, 13, 15, 16, 17, 18, 28] {
+        assert!(seen >> bit & 1 == 1, "no scene of these has need {bit}");
     }
 }
 
@@ -118,7 +168,7 @@ fn another_scene_is_told_from_the_blobs() {
         );
         assert_eq!(fault(&|m| m.positions[9].y += 0.01), "vertices");
         assert_eq!(fault(&|m| m.triangles[0].vertices.rotate_left(1)), "vertices");
-        assert_eq!(fault(&|m| m.materials.iter_mut().for_each(|x| x.colour.y *= 0.999)), "material");
+        assert_eq!(fault(&|m| m.materials.iter_mut().for_each(|x| x.colour.y *= 0.999)), "albedo");
         assert_eq!(fault(&|m| m.lights[0].radiance.x *= 1.001), "strength of a light");
         assert_eq!(fault(&|m| m.lights[1].kind = LightKind::Directional(DVec3::X)), "direction of a light");
         assert_eq!(fault(&|m| m.lights.swap(0, 1)), "strength of a light");

@@ -58,14 +58,15 @@ pub(crate) struct Header {
     pub(crate) right: [i64; 3],
     pub(crate) down: [i64; 3],
     pub(crate) fraction_bits: u8,
-    pub(crate) background: Radiance,
+    /// Straight down, straight up.
+    pub(crate) background: [Radiance; 2],
     pub(crate) ambient: Radiance,
     pub(crate) transfer: u64,
     pub(crate) root: u32,
     pub(crate) depth: u8,
     pub(crate) max_depth: u8,
-    /// Nodes, triangles, smooth, normals, materials, lustres, lights.
-    pub(crate) counts: [usize; 7],
+    /// Nodes, triangles, smooth, normals, materials, lustres, checkers, lights.
+    pub(crate) counts: [usize; 8],
     pub(crate) file_triangles: u64,
     /// C, D, E, epsilon.
     pub(crate) arithmetic: [u8; 4],
@@ -100,14 +101,15 @@ pub(crate) struct Material {
     pub(crate) emission: Radiance,
     pub(crate) albedo: [u16; 3],
     pub(crate) lustre: u16,
+    pub(crate) checker: u16,
 }
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lustre {
     /// For entering and for leaving, Q28.
     pub(crate) eta: [u32; 2],
-    /// Specular, reflected, refracted.
-    pub(crate) colours: [[u16; 3]; 3],
+    /// Specular, reflected, mirrored, refracted, shadow.
+    pub(crate) colours: [[u16; 3]; 5],
     /// Q2.
     pub(crate) exponent: u16,
     pub(crate) gain: u16,
@@ -117,10 +119,22 @@ pub(crate) struct Lustre {
 }
 
 #[derive(Clone, Copy, Debug)]
+pub(crate) struct Checker {
+    /// Q63.
+    pub(crate) step: u64,
+    /// Q63.
+    pub(crate) start: [u64; 3],
+    pub(crate) other: [u16; 3],
+    pub(crate) reserved: u16,
+}
+
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Light {
     pub(crate) kind: u32,
     pub(crate) place: [i64; 3],
     pub(crate) radiance: Radiance,
+    /// Mantissa and exponent.
+    pub(crate) reach: (u16, i64),
 }
 
 /// Everything that a blob says.
@@ -136,6 +150,7 @@ pub(crate) struct Blob {
     pub(crate) normals: Vec<[i64; 3]>,
     pub(crate) materials: Vec<Material>,
     pub(crate) lustres: Vec<Lustre>,
+    pub(crate) checkers: Vec<Checker>,
     pub(crate) lights: Vec<Light>,
 }
 
@@ -219,13 +234,13 @@ impl Cursor<'_> {
             right: self.three(|c| c.zigzag(64)),
             down: self.three(|c| c.zigzag(64)),
             fraction_bits: self.unsigned(1) as u8,
-            background: self.encoded_radiance(),
+            background: [self.encoded_radiance(), self.encoded_radiance()],
             ambient: self.encoded_radiance(),
             transfer: self.varint(32),
             max_depth: self.unsigned(1) as u8,
             root: self.varint(32) as u32,
             depth: self.unsigned(1) as u8,
-            counts: [(); 7].map(|()| self.varint(32) as usize),
+            counts: [(); 8].map(|()| self.varint(32) as usize),
             file_triangles: self.varint(32),
             arithmetic: [(); 4].map(|()| self.unsigned(1) as u8),
             origin: self.three(|c| f64::from_bits(c.varint(64))),
@@ -273,7 +288,8 @@ pub(crate) fn read(bytes: &[u8]) -> Blob {
     assert_eq!(cursor.at, 24 + header_size, "header size");
     cursor.pad();
 
-    let [node_count, triangle_count, smooth, normal_count, material_count, lustre_count, light_count] = header.counts;
+    let [node_count, triangle_count, smooth, normal_count, material_count, lustre_count, checker_count, light_count] =
+        header.counts;
     let wide = |bit: u32| if header.needs >> bit & 1 == 1 { 4 } else { 2 };
     let nodes = cursor.section(node_count, |c| c.node(kernel));
     let triangles = cursor.section(triangle_count, |c| c.triangle(kernel));
@@ -288,24 +304,32 @@ pub(crate) fn read(bytes: &[u8]) -> Blob {
         emission: c.radiance(),
         albedo: c.three(|c| c.unsigned(2) as u16),
         lustre: c.unsigned(2) as u16,
+        checker: c.unsigned(2) as u16,
     });
     let lustres = cursor.section(lustre_count, |c| {
         let mut words = |count: usize| (0..count).map(|_| c.unsigned(2) as u16).collect::<Vec<_>>();
         let eta = words(4);
-        let colours = words(9);
+        let colours = words(15);
         let rest = words(5);
         let eta = [0, 2].map(|i| u32::from(eta[i]) | u32::from(eta[i + 1]) << 16);
-        let colours = [0, 3, 6].map(|i| [colours[i], colours[i + 1], colours[i + 2]]);
+        let colours = [0, 3, 6, 9, 12].map(|i| [colours[i], colours[i + 1], colours[i + 2]]);
         Lustre { eta, colours, exponent: rest[0], gain: rest[1], flags: rest[2], r0: rest[3], reserved: rest[4] }
+    });
+    let checkers = cursor.section(checker_count, |c| Checker {
+        step: c.unsigned(8),
+        start: c.three(|c| c.unsigned(8)),
+        other: c.three(|c| c.unsigned(2) as u16),
+        reserved: c.unsigned(2) as u16,
     });
     let lights = cursor.section(light_count, |c| Light {
         kind: c.unsigned(4) as u32,
         place: c.three(|c| c.signed(4)),
         radiance: c.radiance(),
+        reach: (c.unsigned(2) as u16, c.signed(2)),
     });
     assert_eq!(cursor.unsigned(4), 0, "before the checksum");
     let computed = crc32(&bytes[..cursor.at]);
     assert_eq!(cursor.unsigned(4), u64::from(computed), "checksum");
     assert_eq!(cursor.at, bytes.len(), "nothing follows");
-    Blob { kernel, header, nodes, triangles, ids, corners, normals, materials, lustres, lights }
+    Blob { kernel, header, nodes, triangles, ids, corners, normals, materials, lustres, checkers, lights }
 }

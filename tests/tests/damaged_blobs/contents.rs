@@ -3,7 +3,7 @@
 use core_rt::blob::BlobError;
 use core_rt::kernel::Kernel;
 use core_rt::profile::Need;
-use core_rt::record::{Light, Lustre};
+use core_rt::record::{Checker, Light, Lustre, Reach};
 use core_rt::space::Space;
 use tests::blobs::{Draft, sample};
 use zerocopy::{FromZeros, IntoBytes};
@@ -69,22 +69,52 @@ fn shiny<K: Kernel>(draft: &mut Draft<K>) -> &mut Lustre {
     &mut draft.lustres[0]
 }
 
+/// Gives the sample a pattern of cubes.
+fn checkered<K: Kernel>(draft: &mut Draft<K>) -> &mut Checker {
+    draft.checkers = vec![Checker::new_zeroed()];
+    draft.header.counts.checkers = 1;
+    draft.materials[1].checker = 1;
+    &mut draft.checkers[0]
+}
+
+/// Gives the sample's point light a reach.
+fn reach<K: Kernel>(draft: &mut Draft<K>, mantissa: u16, exponent: i16) {
+    light(draft, Light::POINT).reach = Reach { mantissa, exponent };
+}
+
 fn broken_shading<K: Kernel>() {
     refused::<K>(
         true,
         &[
-            ("a background too bright", |d| d.header.background.exponent = 16, BlobError::Shading),
+            ("a background too bright", |d| d.header.background[1].exponent = 16, BlobError::Shading),
             ("ambient light too dim", |d| d.header.ambient.exponent = -16, BlobError::Shading),
             ("an emission out of range", |d| d.materials[1].emission.exponent = i16::MAX, BlobError::Shading),
             ("a light out of range", |d| d.lights[0].radiance.exponent = i16::MIN, BlobError::Shading),
+            (
+                "a sky that is not declared",
+                |d| d.header.background[1].mantissa[0] ^= 1,
+                BlobError::Undeclared(Need::Sky),
+            ),
             ("a lustre that does not exist", |d| d.materials[0].lustre = 1, BlobError::Shading),
             ("a lustre from the future", |d| shiny(d).reserved = 1, BlobError::Shading),
-            ("a law of highlights from the future", |d| shiny(d).flags = 4, BlobError::Shading),
+            ("a law of highlights from the future", |d| shiny(d).flags = 8, BlobError::Shading),
             ("highlights that are too bright", |d| shiny(d).gain = 16, BlobError::Shading),
             ("an index of refraction of nothing", |d| shiny(d).eta_q28[1] = 0, BlobError::Shading),
             ("a mirror that is not declared", |d| shiny(d).reflected[2] = 1, BlobError::Undeclared(Need::Reflection)),
             ("glass that is not declared", |d| shiny(d).refracted[0] = 1, BlobError::Undeclared(Need::Refraction)),
             ("a highlight that is not declared", |d| shiny(d).specular[1] = 1, BlobError::Undeclared(Need::BlinnPhong)),
+            (
+                "tinted glass that is not declared",
+                |d| shiny(d).shadow[2] = 1,
+                BlobError::Undeclared(Need::TintedShadow),
+            ),
+            ("metal that is not declared", |d| shiny(d).flags = Lustre::METAL, BlobError::Undeclared(Need::Schlick)),
+            ("a checker that does not exist", |d| d.materials[1].checker = 1, BlobError::Shading),
+            ("a checker from the future", |d| checkered(d).reserved = 1, BlobError::Shading),
+            ("a checker that is not declared", |d| checkered(d).other[0] = 1, BlobError::Undeclared(Need::Checker)),
+            ("a light that fades undeclared", |d| reach(d, 1 << 15, 0), BlobError::Undeclared(Need::Falloff)),
+            ("a reach that has not all its bits", |d| reach(d, (1 << 15) - 1, 0), BlobError::Shading),
+            ("a reach beyond all", |d| reach(d, 1 << 15, 257), BlobError::Shading),
             ("more depth than any scene has", |d| d.header.max_depth = 65, BlobError::Header),
             ("a kind of light from the future", |d| d.lights[1].kind = 2, BlobError::Shading),
             ("a direction of length zero", |d| light(d, Light::DIRECTIONAL).place = [0; 3], BlobError::Shading),

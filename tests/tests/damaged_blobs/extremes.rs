@@ -4,8 +4,8 @@ use core_rt::blob::BlobError;
 use core_rt::bvh::Child;
 use core_rt::colour::Radiance;
 use core_rt::kernel::{Bounds, Kernel, Vertices};
-use core_rt::profile::Full;
-use core_rt::record::Light;
+use core_rt::profile::{Full, Need};
+use core_rt::record::{Checker, Light, Lustre, Reach};
 use core_rt::scene::Scene;
 use tests::blobs::{Draft, corners, sample};
 
@@ -30,7 +30,7 @@ fn largest<K: Kernel>(smooth: bool) -> Draft<K> {
     let ([low, high], [near, far]) = ranges::<K>();
     let mut draft = Draft::<K>::read(sample::<K>(smooth).bytes()).expect("a good blob");
     let brightest = Radiance { mantissa: [u16::MAX; 3], exponent: *Radiance::EXPONENTS.end() };
-    (draft.header.ambient, draft.header.background) = (brightest, brightest);
+    (draft.header.ambient, draft.header.background) = (brightest, [brightest; 2]);
     for material in &mut draft.materials {
         (material.albedo, material.emission) = ([u16::MAX; 3], brightest);
     }
@@ -40,7 +40,8 @@ fn largest<K: Kernel>(smooth: bool) -> Draft<K> {
         direction[index / 2] = if index.is_multiple_of(2) { 1 << 30 } else { -(1 << 30) };
         (Light::DIRECTIONAL, direction)
     });
-    draft.lights = points.chain(directions).map(|(kind, place)| Light { kind, place, radiance: brightest }).collect();
+    let light = |(kind, place)| Light { kind, place, radiance: brightest, reach: Reach::default() };
+    draft.lights = points.chain(directions).map(light).collect();
     let all = (0..8).flat_map(|a| (a + 1..8).flat_map(move |b| (b + 1..8).map(move |c| [a, b, c])));
     let vertices = all.map(|triple| -> Vertices { triple.map(|index| corner(index, low, high)) });
     draft.triangles = vertices.map(|triangle| draft.triangle(&triangle, 1).expect("it has an area")).collect();
@@ -58,6 +59,62 @@ fn largest<K: Kernel>(smooth: bool) -> Draft<K> {
     header.counts.smooth = if smooth { count } else { 0 };
     header.counts.lights = draft.lights.len() as u32;
     draft
+}
+
+/// Laws of shading at the ends of what they may say: glass both ways, metal, highlights.
+fn lustres() -> [Lustre; 4] {
+    let all = [u16::MAX; 3];
+    let glass = |eta_q28, exponent_q2, flags| Lustre {
+        eta_q28,
+        specular: all,
+        reflected: all,
+        mirrored: all,
+        refracted: all,
+        shadow: all,
+        exponent_q2,
+        gain: 15,
+        flags,
+        r0: u16::MAX,
+        reserved: 0,
+    };
+    let both = Lustre::FRESNEL | Lustre::METAL;
+    [
+        glass([1, u32::MAX], 0, 0),
+        glass([u32::MAX, 1], u16::MAX, Lustre::PHONG),
+        glass([1 << 28; 2], 4, both),
+        glass([u32::MAX; 2], 4, both | Lustre::PHONG),
+    ]
+}
+
+/// Gives all surfaces a law, cubes as large and as small as there are, and all lights a reach.
+fn glossy<K: Kernel>(draft: &mut Draft<K>, choice: usize) {
+    let needs = [
+        Need::BlinnPhong,
+        Need::Phong,
+        Need::Reflection,
+        Need::Refraction,
+        Need::Schlick,
+        Need::TintedShadow,
+        Need::Checker,
+        Need::Falloff,
+        Need::Sky,
+    ];
+    draft.header.needs = needs.into_iter().fold(draft.header.needs, |needs, need| needs.with(need, true));
+    draft.header.max_depth = 2;
+    draft.lustres = vec![lustres()[choice % 4]];
+    let ends = [0, u64::MAX];
+    draft.checkers = vec![Checker {
+        step_q63: ends[choice % 2],
+        start_q63: [ends[choice / 2 % 2]; 3],
+        other: [u16::MAX; 3],
+        reserved: 0,
+    }];
+    (draft.header.counts.lustres, draft.header.counts.checkers) = (1, 1);
+    (draft.materials[1].lustre, draft.materials[1].checker) = (1, 1);
+    let reaches = [(u16::MAX, 256), (1 << 15, -256), (1 << 15, 0)];
+    for (light, (mantissa, exponent)) in draft.lights.iter_mut().zip(reaches.into_iter().cycle()) {
+        light.reach = Reach { mantissa, exponent };
+    }
 }
 
 /// Brings the largest directions that there are into a picture of 9x7 pixels: the view's axis is one of six.
@@ -81,6 +138,7 @@ fn at_the_ends_of_all_ranges<K: Kernel>() {
         let mut draft = largest::<K>(smooth);
         for eye in 0..8 {
             for view in 0..6 {
+                glossy(&mut draft, eye as usize + view);
                 draft.header.camera.eye = corner(eye, near, far);
                 look(&mut draft, view);
                 let blob = draft.write();

@@ -1,0 +1,84 @@
+//! The light that reaches a point of a surface: from which side, how strong, and what is between.
+//!
+//! A light counts where it is in front of both the surface and its shading normal, and nothing opaque is in the open
+//! segment to it. What is between may be glass that tints its shadow: then every crossing takes its share, and the way is
+//! not bent.
+
+use crate::bvh::{Intersect, Stack};
+use crate::colour::{Albedo, Colour, WHITE, product};
+use crate::kernel::{Kernel, Surface};
+use crate::profile::{Need, Profile};
+use crate::record::Light;
+use crate::scene::Scene;
+use crate::shade::{SpaceOf, UnitOf};
+use crate::space::{self, Scalar, Space};
+use crate::stats::{RayKind, Stats};
+
+/// Light that has arrived.
+#[derive(Debug)]
+pub(crate) struct Arriving<P: Profile> {
+    /// How strong it is, under a right angle.
+    pub(crate) light: space::Light<SpaceOf<P>>,
+    /// The direction to where it comes from.
+    pub(crate) towards: UnitOf<P>,
+    /// The cosine between that and the shading normal.
+    pub(crate) cosine: Scalar<SpaceOf<P>>,
+}
+
+/// What arrives of a light, if anything does.
+pub(crate) fn arriving<P: Profile>(
+    scene: &Scene<'_, P>,
+    surface: &Surface<SpaceOf<P>>,
+    normal: UnitOf<P>,
+    light: &Light,
+    hit: u32,
+    stack: &mut Stack<P::Kernel>,
+    stats: &mut impl Stats,
+) -> Option<Arriving<P>> {
+    let is_point =
+        P::NEEDS.has(Need::PointLight) && (!P::NEEDS.has(Need::DirectionalLight) || light.kind == Light::POINT);
+    let towards = if is_point {
+        SpaceOf::<P>::towards(surface.point, SpaceOf::<P>::point(light.place))?
+    } else {
+        SpaceOf::<P>::unit_from_q30(light.place)
+    };
+    SpaceOf::<P>::cosine(surface.normal, towards)?;
+    let cosine = SpaceOf::<P>::cosine(normal, towards)?;
+    let mut tint = WHITE;
+    if P::NEEDS.has(Need::Shadows) {
+        let shadow = if is_point {
+            P::Kernel::segment(scene.settings, surface, light.place, hit)
+        } else {
+            P::Kernel::leaving(scene.settings, surface, towards, hit)
+        };
+        stats.ray(RayKind::Shadow);
+        let blocks = |between: u32| {
+            if P::NEEDS.has(Need::TintedShadow) {
+                tint = product(&tint, &scene.shadow(between));
+                tint == [0; 3]
+            } else {
+                true
+            }
+        };
+        if shadow.is_some_and(|ray| scene.bvh.any(&ray, stack, stats, blocks)) {
+            return None;
+        }
+    }
+    let mut light_here = <SpaceOf<P> as Space>::Colour::light(&light.radiance);
+    if P::NEEDS.has(Need::Falloff) && is_point && light.reach.mantissa != 0 {
+        let place = SpaceOf::<P>::point(light.place);
+        light_here = SpaceOf::<P>::faded(light_here, surface.point, place, &light.reach);
+    }
+    if P::NEEDS.has(Need::TintedShadow) {
+        light_here = <SpaceOf<P> as Space>::Colour::tinted(light_here, &tint);
+    }
+    Some(Arriving { light: light_here, towards, cosine })
+}
+
+impl<P: Profile> Scene<'_, P> {
+    /// What a crossing of a primitive leaves of light.
+    fn shadow(&self, index: u32) -> Albedo {
+        let lustre = self.surface(index).and_then(|(_, material)| self.lustre(material));
+        lustre.map_or([0; 3], |lustre| lustre.shadow)
+    }
+}
