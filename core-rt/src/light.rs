@@ -1,7 +1,6 @@
 //! The light that reaches a point of a surface: from which side, how strong, and what is between.
 //!
-//! A light counts where it is in front of both the surface and its shading normal, and nothing opaque is in the open
-//! segment to it. What is between may be glass that tints its shadow: then every crossing takes its share, and the way is
+//! A light counts where it is in front of the shading normal, and nothing opaque is in the open segment to it. What is between may be glass that tints its shadow: then every crossing takes its share, and the way is
 //! not bent.
 
 use crate::bvh::{Intersect, Stack};
@@ -10,7 +9,7 @@ use crate::kernel::{Kernel, Surface};
 use crate::profile::{Need, Profile};
 use crate::record::Light;
 use crate::scene::Scene;
-use crate::shade::{SpaceOf, UnitOf};
+use crate::shade::{Smooth, SpaceOf, UnitOf};
 use crate::space::{self, Scalar, Space};
 use crate::stats::{RayKind, Stats};
 
@@ -29,7 +28,7 @@ pub(crate) struct Arriving<P: Profile> {
 pub(crate) fn arriving<P: Profile>(
     scene: &Scene<'_, P>,
     surface: &Surface<SpaceOf<P>>,
-    normal: UnitOf<P>,
+    smooth: Option<Smooth<SpaceOf<P>>>,
     light: &Light,
     hit: u32,
     stack: &mut Stack<P::Kernel>,
@@ -42,14 +41,17 @@ pub(crate) fn arriving<P: Profile>(
     } else {
         SpaceOf::<P>::unit_from_q30(light.place)
     };
-    SpaceOf::<P>::cosine(surface.normal, towards)?;
-    let cosine = SpaceOf::<P>::cosine(normal, towards)?;
+    if smooth.is_none_or(|smooth| smooth.lifted == surface.point) {
+        SpaceOf::<P>::cosine(surface.normal, towards)?;
+    }
+    let cosine = SpaceOf::<P>::cosine(smooth.map_or(surface.normal, |smooth| smooth.normal), towards)?;
     let mut tint = WHITE;
     if P::NEEDS.has(Need::Shadows) {
+        let from = &Surface { point: smooth.map_or(surface.point, |smooth| smooth.lifted), ..*surface };
         let shadow = if is_point {
-            P::Kernel::segment(scene.settings, surface, light.place, hit)
+            P::Kernel::segment(scene.settings, from, light.place, hit)
         } else {
-            P::Kernel::leaving(scene.settings, surface, towards, hit)
+            P::Kernel::leaving(scene.settings, from, towards, hit)
         };
         stats.ray(RayKind::Shadow);
         let blocks = |between: u32| {

@@ -48,7 +48,8 @@ pub(crate) fn shade<'a, P: Profile>(
     let (triangle, material) = scene.surface(hit)?;
     let lustre = scene.lustre(material);
     let surface = P::Kernel::resolve(ray, triangle);
-    let normal = shading_normal(scene, hit, &surface);
+    let smooth = smooth(scene, hit, triangle, &surface);
+    let normal = smooth.map_or(surface.normal, |smooth| smooth.normal);
     let along = lustre.map(|_| P::Kernel::heading(ray));
     let cosine = along.and_then(|along| SpaceOf::<P>::cosine(SpaceOf::<P>::negate(along), normal));
     let whiteness = match lustre {
@@ -68,7 +69,7 @@ pub(crate) fn shade<'a, P: Profile>(
             diffuse = Colour::constant(&scene.header.ambient);
         }
         for light in scene.shading.lights {
-            let Some(arriving) = arriving(scene, &surface, normal, light, hit, stack, stats) else { continue };
+            let Some(arriving) = arriving(scene, &surface, smooth, light, hit, stack, stats) else { continue };
             diffuse = diffuse.plus(Colour::lit(&arriving.light, arriving.cosine));
             if let Some((lustre, along)) = shine {
                 let lobe = lobe::<P>(lustre, along, normal, arriving.towards);
@@ -112,20 +113,41 @@ fn lobe<P: Profile>(lustre: &Lustre, along: UnitOf<P>, normal: UnitOf<P>, toward
     SpaceOf::<P>::lobe(a, b, lustre.exponent_q2)
 }
 
-/// The interpolated normal on the geometric normal's side, or that one for a flat triangle.
-fn shading_normal<P: Profile>(scene: &Scene<'_, P>, hit: u32, surface: &Surface<SpaceOf<P>>) -> UnitOf<P> {
+/// What a surface has between smooth corners.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Smooth<S: Space> {
+    /// The interpolated normal, on the geometric normal's side.
+    pub(crate) normal: S::Unit,
+    /// From where lights are looked for: the surface that the normals speak of, where it is convex, is above the triangle,
+    /// whose own shadow would show as a dark band otherwise.
+    pub(crate) lifted: S::Point,
+}
+
+/// The smooth surface at a hit; `None` for a flat triangle.
+fn smooth<P: Profile>(
+    scene: &Scene<'_, P>,
+    hit: u32,
+    triangle: &<P::Kernel as Kernel>::Triangle,
+    surface: &Surface<SpaceOf<P>>,
+) -> Option<Smooth<SpaceOf<P>>> {
     if !P::NEEDS.has(Need::SmoothNormals) {
-        return surface.normal;
+        return None;
     }
-    let interpolated = scene
-        .shading
-        .normals(hit)
-        .and_then(|normals| <SpaceOf<P> as Space>::interpolate(normals, surface.u, surface.v));
-    match interpolated {
-        None => surface.normal,
-        Some(normal) if <SpaceOf<P> as Space>::aligned(normal, surface.normal) => normal,
-        Some(normal) => <SpaceOf<P> as Space>::negate(normal),
+    let mut normals = scene.shading.normals(hit)?;
+    let mut normal = SpaceOf::<P>::interpolate(normals, surface.u, surface.v)?;
+    if !SpaceOf::<P>::aligned(normal, surface.normal) {
+        normal = SpaceOf::<P>::negate(normal);
+        normals = normals.map(SpaceOf::<P>::negate);
     }
+    let mut lifted = surface.point;
+    // A triangle with a normal far off its own is creased, and no part of a smooth surface.
+    if P::NEEDS.has(Need::Shadows) && normals.iter().all(|&normal| SpaceOf::<P>::near(normal, surface.normal)) {
+        let corners = P::Kernel::vertices(triangle).map(SpaceOf::<P>::point);
+        let (low, high) = (P::Kernel::MARGIN, (1 << P::Kernel::GRID_BITS) - 1 - P::Kernel::MARGIN);
+        let range = [low, high].map(|c| SpaceOf::<P>::point([c; 3]));
+        lifted = SpaceOf::<P>::lift(lifted, corners, normals, [surface.u, surface.v], range);
+    }
+    Some(Smooth { normal, lifted })
 }
 
 impl<'a, P: Profile> Scene<'a, P> {

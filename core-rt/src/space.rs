@@ -51,7 +51,7 @@ pub(crate) fn fresnel_q16(cosine_q16: u32, r0_q16: u32) -> u32 {
 /// Formats and operations for shading. Implemented by zero-sized types.
 pub trait Space: Copy + Debug + Default + Send + Sync + 'static {
     /// A point on a surface or a light, with a few bits below the grid.
-    type Point: Copy + Debug;
+    type Point: Copy + Debug + PartialEq;
     /// A unit vector.
     type Unit: Copy + Debug + PartialEq;
     /// A number in [0, 1]: a barycentric coordinate.
@@ -75,6 +75,18 @@ pub trait Space: Copy + Debug + Default + Send + Sync + 'static {
     fn towards(from: Self::Point, to: Self::Point) -> Option<Self::Unit>;
     /// `(1 - u - v) n0 + u n1 + v n2`, normalised; `None` where it is zero.
     fn interpolate(normals: [Self::Unit; 3], u: Self::Fraction, v: Self::Fraction) -> Option<Self::Unit>;
+    /// A point of a triangle of these corners, moved onto the planes through them across these normals: by each in its
+    /// weight, unless it is above (Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021). It stays between
+    /// the two ends of a range, in which the corners are.
+    fn lift(
+        point: Self::Point,
+        corners: [Self::Point; 3],
+        normals: [Self::Unit; 3],
+        weights: [Self::Fraction; 2],
+        range: [Self::Point; 2],
+    ) -> Self::Point;
+    /// Whether the cosine of the angle between two directions is above 1/4.
+    fn near(a: Self::Unit, b: Self::Unit) -> bool;
     /// The opposite direction.
     fn negate(unit: Self::Unit) -> Self::Unit;
     /// Whether the angle between two directions is at most a right one.

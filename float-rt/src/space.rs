@@ -58,6 +58,28 @@ impl<F: Real> Space for FloatSpace<F> {
         normalise(add(add(scale(n0, F::ONE - u - v), scale(n1, u)), scale(n2, v)))
     }
 
+    fn lift(
+        point: Triple<F>,
+        corners: [Triple<F>; 3],
+        normals: [Triple<F>; 3],
+        [u, v]: [F; 2],
+        _range: [Triple<F>; 2],
+    ) -> Triple<F> {
+        let mut lifted = point;
+        for ((corner, normal), weight) in corners.into_iter().zip(normals).zip([F::ONE - u - v, u, v]) {
+            let height = dot(sub(point, corner), normal);
+            if height < F::ZERO {
+                lifted = sub(lifted, scale(normal, height * weight));
+            }
+        }
+        lifted
+    }
+
+    #[inline]
+    fn near(a: Triple<F>, b: Triple<F>) -> bool {
+        dot(a, b) > F::ONE.ldexp(-2)
+    }
+
     #[inline]
     fn negate(unit: Triple<F>) -> Triple<F> {
         unit.map(|c| -c)

@@ -90,6 +90,36 @@ impl Space for Grid14 {
         ])
     }
 
+    /// Differences are scaled to 15 bits, so that a dot product is below 3 * 2^29 and, in units of the scaled difference, little
+    /// over 2^15 * 3^(1/2); with a normal below 2^31, with a weight below 2^31 again.
+    fn lift(
+        point: Self::Point,
+        corners: [Self::Point; 3],
+        normals: [Self::Unit; 3],
+        [u, v]: [I2F14; 2],
+        [low, high]: [Self::Point; 2],
+    ) -> Self::Point {
+        let (u, v) = (i32::from(u.to_bits()), i32::from(v.to_bits()));
+        let mut lifted = point;
+        for ((corner, normal), weight_q14) in corners.into_iter().zip(normals).zip([(1 << 14) - u - v, u, v]) {
+            let away = sub(point, corner);
+            let shift = bits(away).saturating_sub(15);
+            let normal = normal.map(bits_of);
+            let height = round_shift(dot(away.map(|c| c >> shift), normal), 14);
+            if height < 0 {
+                for (lifted, n_q14) in lifted.iter_mut().zip(normal) {
+                    *lifted -= round_shift(round_shift(height * n_q14, 14) * weight_q14, 14) << shift;
+                }
+            }
+        }
+        [0, 1, 2].map(|axis| lifted[axis].clamp(low[axis], high[axis]))
+    }
+
+    #[inline]
+    fn near(a: Self::Unit, b: Self::Unit) -> bool {
+        dot_q28(a, b) > 1 << 26
+    }
+
     #[inline]
     fn negate(unit: Self::Unit) -> Self::Unit {
         unit.map(|c| -c) // a unit vector's components are in [-1, 1], and Q14 goes to -2

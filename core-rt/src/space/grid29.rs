@@ -128,6 +128,35 @@ impl<F: Fraction> Space for Grid29With<F> {
         ])
     }
 
+    /// Differences are scaled to 31 bits, as in 14 bits to 15.
+    fn lift(
+        point: Self::Point,
+        corners: [Self::Point; 3],
+        normals: [Self::Unit; 3],
+        [u, v]: [FixedI32<F>; 2],
+        [low, high]: [Self::Point; 2],
+    ) -> Self::Point {
+        let [u, v] = [u, v].map(|weight| i64::from(weight.to_bits()) >> (F::U32 - 30));
+        let mut lifted = point;
+        for ((corner, normal), weight_q30) in corners.into_iter().zip(normals).zip([(1 << 30) - u - v, u, v]) {
+            let away = sub(point, corner);
+            let shift = bits(away).saturating_sub(31);
+            let normal = q30(normal);
+            let height = round_shift(dot(away.map(|c| c >> shift), normal), 30);
+            if height < 0 {
+                for (lifted, n_q30) in lifted.iter_mut().zip(normal) {
+                    *lifted -= round_shift(round_shift(height * n_q30, 30) * weight_q30, 30) << shift;
+                }
+            }
+        }
+        [0, 1, 2].map(|axis| lifted[axis].clamp(low[axis], high[axis]))
+    }
+
+    #[inline]
+    fn near(a: Self::Unit, b: Self::Unit) -> bool {
+        dot(wide(a), wide(b)) > 1 << (2 * F::U32 - 2)
+    }
+
     #[inline]
     fn negate(unit: Self::Unit) -> Self::Unit {
         wide(unit).map(|c| saturated(-c))

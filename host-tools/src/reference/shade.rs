@@ -84,13 +84,17 @@ impl Reference<'_> {
                 LightKind::Point(position) => (position - surface.point, Some(position)),
                 LightKind::Directional(travel) => (-travel, None),
             };
-            let ray = Ray::new(surface.point, towards);
             // Not a number if the light is at the point, which then counts as unlit.
-            let l = ray.step.normalize();
+            let l = Ray::new(surface.point, towards).step.normalize();
             let cosine = surface.normal.dot(l);
-            if !(cosine > 0.0 && surface.geometric_normal.dot(l) > 0.0) {
+            if !(cosine > 0.0
+                && (surface.lifted.is_some_and(|lifted| lifted != surface.point)
+                    || surface.geometric_normal.dot(l) > 0.0))
+            {
                 continue;
             }
+            let from = surface.lifted.unwrap_or(surface.point);
+            let ray = Ray::new(from, end.map_or(towards, |end| end - from));
             let passed = self.passed(&ray, surface.prim, end);
             if passed == DVec3::ZERO {
                 continue;

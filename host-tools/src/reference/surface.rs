@@ -15,6 +15,10 @@ const SHIFT_ACROSS: f64 = 1.0 / 64.0;
 /// exactly, where rounding would decide.
 const SHIFT_ALONG: f64 = 1.0 / 1024.0;
 
+/// A triangle is creased, and no part of a smooth surface, if the cosine between a corner's normal and its own is not above
+/// this. An even fraction of what regular solids have (1/3 and more) would be met exactly by some.
+const STEEPEST: f64 = 0.25;
+
 /// A point that a ray has met, seen along that ray.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Surface<'m> {
@@ -30,6 +34,8 @@ pub(super) struct Surface<'m> {
     pub(super) geometric_normal: DVec3,
     /// Unit shading normal ns, on the same side as ng.
     pub(super) normal: DVec3,
+    /// From where lights are looked for, if the surface is smooth, and not creased: above it, where that is convex.
+    pub(super) lifted: Option<DVec3>,
     /// What the surface is made of.
     pub(super) material: &'m Material,
     /// Its diffuse reflectance here, linear RGB.
@@ -69,7 +75,16 @@ impl<'m> Reference<'m> {
         if !model.colours.is_empty() {
             albedo *= blend(&model.colours, triangle.vertices);
         }
-        Surface::new(prim, point, direction, front, smooth, material, albedo)
+        let mut surface = Surface::new(prim, point, direction, front, smooth, material, albedo);
+        if let (Some(normals), Some(smooth)) = (triangle.normals, smooth) {
+            let side = if surface.normal == smooth { 1.0 } else { -1.0 };
+            let normals = normals.map(|n| model.normals[n as usize] * side);
+            let corners = triangle.vertices.map(|v| model.positions[v as usize]);
+            if normals.iter().all(|n| n.dot(surface.geometric_normal) > STEEPEST) {
+                surface.lifted = Some(lifted(point, corners, normals, weights));
+            }
+        }
+        surface
     }
 
     fn on_sphere(&self, direction: DVec3, crossing: DVec3, prim: u32) -> Surface<'m> {
@@ -96,8 +111,20 @@ impl<'m> Surface<'m> {
         let geometric_normal = if is_front { front } else { -front };
         let smooth = smooth.unwrap_or(geometric_normal);
         let normal = if smooth.dot(geometric_normal) < 0.0 { -smooth } else { smooth };
-        Self { prim, point, direction, is_front, geometric_normal, normal, material, albedo }
+        Self { prim, point, direction, is_front, geometric_normal, normal, lifted: None, material, albedo }
     }
+}
+
+/// A point of a triangle moved onto the mean of the planes through its corners, along their normals, weighted as the point
+/// is; planes that it is above already do not move it.
+///
+/// J. Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021.
+fn lifted(point: DVec3, corners: [DVec3; 3], normals: [DVec3; 3], weights: [f64; 3]) -> DVec3 {
+    let mut lifted = point;
+    for ((corner, normal), weight) in corners.into_iter().zip(normals).zip(weights) {
+        lifted -= normal * (weight * (point - corner).dot(normal).min(0.0));
+    }
+    lifted
 }
 
 /// The material's own albedo at `point`, where the geometric normal is `normal`, of either sign.
@@ -132,6 +159,18 @@ fn is_odd(checker: Checker, point: DVec3, normal: DVec3) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn points_are_lifted_where_the_surface_is_convex() {
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        let middle = DVec3::new(1.0, 1.0, 0.0) / 3.0;
+        let lift = |normals| lifted(middle, corners, normals, [1.0 / 3.0; 3]) - middle;
+        assert_eq!(lift([DVec3::Z; 3]), DVec3::ZERO);
+        let outward = corners.map(|corner| (corner - middle + DVec3::Z).normalize());
+        assert!(lift(outward).z > 0.1);
+        let inward = corners.map(|corner| (middle - corner + DVec3::Z).normalize());
+        assert_eq!(lift(inward), DVec3::ZERO);
+    }
 
     #[test]
     fn cubes_alternate_and_a_plane_between_two_layers_is_in_one() {

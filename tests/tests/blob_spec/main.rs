@@ -92,7 +92,7 @@ fn looks_are_read_by_the_document() {
             let mut model = gallery(name);
             model.materials.iter_mut().for_each(|m| m.tinted_shadow |= name == "glass");
             let shiny = model.materials.iter_mut().filter_map(|m| m.specular.as_mut());
-            shiny.for_each(|s| s.lobe = if name == "mirrors" { Lobe::Phong } else { Lobe::BlinnPhong });
+            shiny.for_each(|s| s.lobe = if name == "materials" { Lobe::Phong } else { Lobe::BlinnPhong });
             let found = prepared(&model, kernel);
             assert_eq!(agree(&found, &model), Ok(()), "{kernel} {name}");
             seen |= found.header.needs;
