@@ -25,7 +25,7 @@ fn the_gallery() {
             let truth = Picture::from_fn(width, height, |x, y| pixels[(y * width + x) as usize]);
             truth.write_png(std::path::Path::new(&format!("/tmp/w-{scene}-{width}-ref.png"))).unwrap();
             for engine in ENGINES {
-                if !["exact29", "exact14", "f64", "f32"].contains(&engine.name()) {
+                if !["exact29", "exact14", "hanika-cons", "hanika-cd", "f32"].contains(&engine.name()) {
                     continue;
                 }
                 let blob = engine.prepare(&model, &Options::default()).expect("it fits").blob;

@@ -20,6 +20,7 @@ mod boxes;
 mod ray;
 mod resolve;
 mod settings;
+mod shading;
 #[cfg(test)]
 mod testing;
 mod triangle;

@@ -3,16 +3,20 @@
 //! Q30 holds 1, and what rounding makes of it. Q31 does not: there 1 is `1 - 2^-31`, as in the 2009 report's Table 1, and
 //! what is made saturates.
 
+mod optics;
+
+pub(crate) use optics::Optics;
+
 use core::marker::PhantomData;
 
 use fixed::FixedI32;
 use fixed::types::U16F16;
-use fixed::types::extra::{LeEqU32, U30, U31};
+use fixed::types::extra::{U30, U31};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-use super::{Space, faded, fresnel_q16, is_unit_q30, raised_q31};
+use super::{Space, faded, is_unit_q30, raised_q31};
 use crate::colour::{Radiance, Rgb16};
-use crate::num::{Triple, bits, dot, inverse_sqrt_u64, power, round_shift, sqrt_u64, sub};
+use crate::num::{Triple, bits, dot, inverse_sqrt_u64, round_shift, sub};
 use crate::record::{Checker, Reach};
 
 /// The space of 29-bit grids, with `F` (30 or 31) fractional bits in unit vectors and barycentrics.
@@ -33,31 +37,31 @@ pub(crate) const POINT_BITS: u32 = 8;
 #[repr(C)]
 pub struct Normal29(pub [i32; 3]);
 
-/// What has 30 or 31 fractional bits.
-pub trait Fraction: LeEqU32 + Copy + Default + core::fmt::Debug + Send + Sync + 'static {}
+/// 30 or 31 fractional bits.
+pub trait Fraction: Optics {}
 
 impl Fraction for U30 {}
 impl Fraction for U31 {}
 
 /// The nearest number of the format.
 #[inline]
-fn saturated<F: Fraction>(bits: i64) -> FixedI32<F> {
+pub(crate) fn saturated<F: Fraction>(bits: i64) -> FixedI32<F> {
     FixedI32::from_bits(bits.clamp(i32::MIN.into(), i32::MAX.into()) as i32)
 }
 
 /// The components in Q30, in which products have room.
 #[inline]
-fn q30<F: Fraction>(unit: Triple<FixedI32<F>>) -> Triple<i64> {
+pub(crate) fn q30<F: Fraction>(unit: Triple<FixedI32<F>>) -> Triple<i64> {
     wide(unit).map(|c| c >> (F::U32 - 30))
 }
 
 #[inline]
-fn from_q30<F: Fraction>(c_q30: i64) -> FixedI32<F> {
+pub(crate) fn from_q30<F: Fraction>(c_q30: i64) -> FixedI32<F> {
     saturated(c_q30 << (F::U32 - 30))
 }
 
 #[inline]
-fn wide<F: Fraction>(unit: Triple<FixedI32<F>>) -> Triple<i64> {
+pub(crate) fn wide<F: Fraction>(unit: Triple<FixedI32<F>>) -> Triple<i64> {
     unit.map(|c| c.to_bits().into())
 }
 
@@ -176,47 +180,27 @@ impl<F: Fraction> Space for Grid29With<F> {
 
     #[inline]
     fn reflect(along: Self::Unit, normal: Self::Unit) -> Self::Unit {
-        let (d, n) = (q30(along), q30(normal));
-        let twice_q30 = round_shift(dot(d, n), 29); // little over 2 at most
-        let mirrored = |d: i64, n: i64| from_q30(d - round_shift(twice_q30 * n, 30));
-        [mirrored(d[0], n[0]), mirrored(d[1], n[1]), mirrored(d[2], n[2])]
+        F::reflect(along, normal)
     }
 
-    /// As in 14 bits; eta is below 16, and its product with what is at most 1 in Q30 below 2^62.
     #[inline]
     fn refract(along: Self::Unit, normal: Self::Unit, eta_q28: u32) -> Option<Self::Unit> {
-        let (d, n) = (q30(along), q30(normal));
-        let cosine_q30 = -round_shift(dot(d, n), 30);
-        let part = |d: i64, n: i64| {
-            let across_q30 = d + round_shift(cosine_q30 * n, 30);
-            round_shift(across_q30.clamp(-(1 << 30), 1 << 30) * i64::from(eta_q28), 28)
-        };
-        let part = [part(d[0], n[0]), part(d[1], n[1]), part(d[2], n[2])];
-        if bits(part) > 31 {
-            return None; // at least 2
-        }
-        let square_q60: u64 = part.iter().map(|&c| (c * c) as u64).sum(); // at most 3 * 2^62
-        let behind_q30 = sqrt_u64((1u64 << 60).checked_sub(square_q60)?) as i64;
-        let bent = |part: i64, n: i64| from_q30(part - round_shift(behind_q30 * n, 30));
-        Some([bent(part[0], n[0]), bent(part[1], n[1]), bent(part[2], n[2])])
+        F::refract(along, normal, eta_q28)
     }
 
     #[inline]
     fn halfway(a: Self::Unit, b: Self::Unit) -> Option<Self::Unit> {
-        let (a, b) = (wide(a), wide(b));
-        normalise([a[0] + b[0], a[1] + b[1], a[2] + b[2]])
+        F::halfway(a, b)
     }
 
-    /// The chord is little over 2 at most, its square below 2^63 in Q60; half of it is the versine.
     #[inline]
     fn lobe(a: Self::Unit, b: Self::Unit, exponent_q2: u16) -> U16F16 {
-        let square_q60: u64 = sub(q30(a), q30(b)).iter().map(|&c| (c * c) as u64).sum();
-        U16F16::from_bits(power((square_q60 >> 31) as u32, exponent_q2))
+        F::lobe(a, b, exponent_q2)
     }
 
     #[inline]
     fn fresnel(cosine: U16F16, r0: u16) -> U16F16 {
-        U16F16::from_bits(fresnel_q16(cosine.to_bits(), r0.into()))
+        F::fresnel(cosine, r0)
     }
 
     /// As in 14 bits: with the difference scaled to 31 bits its square is in [2^60, 3 * 2^62), and the quotient in
