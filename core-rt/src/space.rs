@@ -39,13 +39,16 @@ pub(crate) const fn raised_q31(is_across: bool) -> u32 {
     1 << if is_across { 25 } else { 21 }
 }
 
-/// Schlick's share in Q16 for a cosine in Q16; within 2^-13. The fifth power is that of 15 bits, so that products fit 32.
+/// Schlick's share in Q16 for a cosine in Q16; within 2^-13. The fifth power is that of 15 bits, so that products fit 32: at
+/// most 2^30 + 2^14, and 2^31 + 2^14.
 #[inline]
 pub(crate) fn fresnel_q16(cosine_q16: u32, r0_q16: u32) -> u32 {
-    let x_q15 = ((1 << 16) - cosine_q16.min(1 << 16)) >> 1;
-    let square = (x_q15 * x_q15) >> 15;
-    let fifth_q15 = (((square * square) >> 15) * x_q15) >> 15;
-    r0_q16 + ((((1 << 16) - r0_q16) * fifth_q15) >> 15)
+    let product = |a: u32, b: u32| (a * b + (1 << 14)) >> 15;
+    let x_q15 = ((1 << 16) + 1 - cosine_q16.min(1 << 16)) >> 1;
+    let square_q15 = product(x_q15, x_q15);
+    let fifth_q15 = product(product(square_q15, square_q15), x_q15);
+    let r0_q16 = r0_q16 + (r0_q16 >> 15);
+    r0_q16 + product((1 << 16) - r0_q16, fifth_q15)
 }
 
 /// Formats and operations for shading. Implemented by zero-sized types.

@@ -1,6 +1,8 @@
 //! The numbers at the ends of their documented ranges: every bound that core-rt states, measured against f64 or wide
 //! integers. One table holds all tolerances; an entry that is too generous fails as stale.
 
+mod optics;
+
 use core_rt::colour::{Colour, Rgb16, Transfer};
 use core_rt::exact::{Exact, Ray, Reciprocal, Width, Width14, Width20, Width29};
 use core_rt::kernel::{Bounds, Kernel, NONE};
@@ -15,7 +17,7 @@ use tests::rays::{self, Rays};
 
 /// The largest error of each operation, in the unit that its name gives. What is measured must be at most this, and at
 /// least a quarter of it.
-const TOLERANCES: [(&str, f64); 11] = [
+const TOLERANCES: [(&str, f64); 64] = [
     ("exact14 normalise, 2^-14", 3.0),
     ("exact29 normalise, 2^-30", 3.0),
     ("exact14 depth, 2^-13", 8.0),
@@ -27,6 +29,59 @@ const TOLERANCES: [(&str, f64); 11] = [
     ("exact14 point, grid units", 0.28125),
     ("exact20 point, grid units", 0.00390625),
     ("exact29 point, grid units", 0.00390625),
+    ("14 altitude, 2^-16", 0.0),
+    ("14 cubes, 2^-16", 6.0),
+    ("14 faded, 2^-16", 8.0),
+    ("14 fresnel, 2^-16", 10.0),
+    ("14 halfway, 2^-14", 2.5),
+    ("14 lift, units", 2.5),
+    ("14 lobe to 1, 2^-16", 20.0),
+    ("14 lobe to 10, 2^-16", 20.0),
+    ("14 lobe to 100, 2^-16", 20.0),
+    ("14 lobe to 1000, 2^-16", 20.0),
+    ("14 lobe to 10000, 2^-16", 25.0),
+    ("14 reflect, 2^-14", 1.25),
+    ("14 refract, 2^-14", 6.0),
+    ("29 altitude, 2^-16", 1.0),
+    ("29 cubes, 2^-16", 0.0),
+    ("29 faded, 2^-16", 4.0),
+    ("29 fresnel, 2^-16", 10.0),
+    ("29 halfway, 2^-30", 2.0),
+    ("29 lift, units", 2.5),
+    ("29 lobe to 1, 2^-16", 20.0),
+    ("29 lobe to 10, 2^-16", 20.0),
+    ("29 lobe to 100, 2^-16", 20.0),
+    ("29 lobe to 1000, 2^-16", 20.0),
+    ("29 lobe to 10000, 2^-16", 25.0),
+    ("29 reflect, 2^-30", 1.25),
+    ("29 refract, 2^-30", 3.0),
+    ("Q31 altitude, 2^-16", 1.0),
+    ("Q31 cubes, 2^-16", 0.0),
+    ("Q31 faded, 2^-16", 4.0),
+    ("Q31 fresnel, 2^-16", 2.5),
+    ("Q31 halfway, 2^-30", 1.5),
+    ("Q31 lift, units", 4.0),
+    ("Q31 lobe to 1, 2^-16", 1.25),
+    ("Q31 lobe to 10, 2^-16", 1.25),
+    ("Q31 lobe to 100, 2^-16", 1.25),
+    ("Q31 lobe to 1000, 2^-16", 1.25),
+    ("Q31 lobe to 10000, 2^-16", 2.5),
+    ("Q31 reflect, 2^-30", 8.0),
+    ("Q31 refract, 2^-30", 20000.0),
+    ("f32 altitude, 2^-16", 0.0025),
+    ("f32 cubes, 2^-16", 8.0),
+    ("f32 faded, 2^-16", 0.02),
+    ("f32 fresnel, 2^-16", 0.0125),
+    ("f32 halfway, 2^-24", 2.0),
+    ("f32 lift, units", 2.0),
+    ("f32 lobe to 1, 2^-16", 0.0125),
+    ("f32 lobe to 10, 2^-16", 0.1),
+    ("f32 lobe to 100, 2^-16", 1.25),
+    ("f32 lobe to 1000, 2^-16", 10.0),
+    ("f32 lobe to 10000, 2^-16", 100.0),
+    ("f32 reflect, 2^-24", 5.0),
+    ("f32 refract, 2^-24", 3.0),
+    ("power, 2^-16", 40.0),
 ];
 
 #[track_caller]
