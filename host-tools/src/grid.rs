@@ -53,8 +53,8 @@ impl Grid {
             return Err(GridError::NoExtent);
         }
 
-        // A unit less than the range, so that no rounding leaves it.
-        let (grid_low, grid_high) = (f64::from(K::MARGIN) + 0.5, f64::from((1 << K::GRID_BITS) - K::MARGIN) - 1.5);
+        // A unit less than the range, so that no rounding leaves it; and whole units, so that what is on a grid stays there.
+        let (grid_low, grid_high) = (f64::from(K::MARGIN) + 1.0, f64::from((1 << K::GRID_BITS) - K::MARGIN) - 2.0);
         let span = f64::from(K::SPAN) - 1.0;
         let mut scale = f64::INFINITY;
         for axis in 0..3 {
