@@ -20,6 +20,7 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+mod albedo;
 pub mod arithmetic;
 pub mod blob;
 pub mod bvh;
@@ -29,6 +30,7 @@ pub mod exact;
 pub mod hanika;
 pub mod kernel;
 pub mod num;
+pub mod paint;
 pub mod profile;
 pub mod record;
 pub mod render;
@@ -38,4 +40,5 @@ mod shade;
 pub mod space;
 mod srgb;
 pub mod stats;
+pub mod texture;
 pub mod whitted;

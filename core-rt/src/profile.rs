@@ -62,7 +62,7 @@ pub enum Need {
     Texture = 1 << 22,
     /// Pictures on surfaces, smooth between texels.
     Bilinear = 1 << 23,
-    /// More than 2^16 - 1 texture coordinates.
+    /// More than 2^16 - 1 texture coordinates or colours of vertices.
     WideUvs = 1 << 24,
     /// Pixels of three bytes.
     Rgb888 = 1 << 25,
@@ -133,7 +133,7 @@ impl Display for Need {
             Self::VertexColours => "vertex colours",
             Self::Texture => "textures",
             Self::Bilinear => "smooth textures",
-            Self::WideUvs => "wide texture coordinates",
+            Self::WideUvs => "wide indices of texture coordinates and colours",
             Self::Rgb888 => "RGB888 output",
             Self::Rgb565 => "RGB565 output",
             Self::Gray8 => "gray output",

@@ -4,6 +4,7 @@ use crate::blob::{BlobError, Header, check, open};
 use crate::bvh::Bvh;
 use crate::camera::Camera;
 use crate::kernel::Kernel;
+use crate::paint::Paint;
 use crate::profile::{Need, Profile};
 use crate::record::{Light, Lustre, Material};
 use crate::section::{Integers, Reader};
@@ -22,6 +23,8 @@ pub struct Shading<'a, K: Kernel> {
     pub normal_indices: Integers<'a>,
     /// Unit normals.
     pub normals: &'a [<K::Space as Space>::Normal],
+    /// Textures and colours of vertices.
+    pub paint: Paint<'a>,
     /// Materials.
     pub materials: &'a [Material],
     /// What is more than matt of them.
@@ -35,11 +38,7 @@ impl<K: Kernel> Shading<'_, K> {
     #[inline]
     #[must_use]
     pub fn is_flat(&self, index: u32) -> bool {
-        let flat = match self.normal_indices {
-            Integers::Narrow(_) => u16::MAX.into(),
-            Integers::Wide(_) => u32::MAX,
-        };
-        self.normal_indices.triple(index) == [flat; 3]
+        self.normal_indices.is_none(index)
     }
 
     /// The normals of a triangle's vertices; `None` for a flat one.
@@ -128,6 +127,7 @@ fn view<'a, K: Kernel>(header: &Header, sections: &'a [u8]) -> Option<(Bvh<'a, K
     let shading = Shading {
         normal_indices: reader.integers(counts.smooth.checked_mul(3)?, header.needs.has(Need::WideNormals))?,
         normals: reader.records(counts.normals)?,
+        paint: Paint::read(&mut reader, &counts.paint, header.needs, counts.triangles, counts.materials)?,
         materials: reader.records(counts.materials)?,
         lustres: reader.records(counts.lustres)?,
         lights: reader.records(counts.lights)?,

@@ -9,6 +9,7 @@
 //! The shading normal is brought to the geometric normal's side, and that one to the viewer's. A light behind either
 //! gives nothing.
 
+use crate::albedo::albedo;
 use crate::bvh::{Intersect, Stack};
 use crate::colour::Colour;
 use crate::kernel::{Kernel, NONE, Surface};
@@ -63,7 +64,7 @@ pub(crate) fn shade<'a, P: Profile>(
             shining = shining.plus(Colour::lit(&light.radiance, lobe));
         }
     }
-    let mut colour = arriving.reflected(&material.albedo);
+    let mut colour = arriving.reflected(&albedo(scene, hit, material, &surface));
     if let Some(lustre) = shine {
         colour = colour.plus(shining.reflected(&lustre.specular).doubled(lustre.gain.into()));
     }

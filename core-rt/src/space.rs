@@ -55,6 +55,8 @@ pub trait Space: Copy + Debug + Default + Send + Sync + 'static {
     fn towards(from: Self::Point, to: Self::Point) -> Option<Self::Unit>;
     /// `(1 - u - v) n0 + u n1 + v n2`, normalised; `None` where it is zero.
     fn interpolate(normals: [Self::Unit; 3], u: Self::Fraction, v: Self::Fraction) -> Option<Self::Unit>;
+    /// `(1 - u - v) a + u b + v c` of numbers from 0 to below 2^30, rounded to nearest.
+    fn blend(corners: Triple<i32>, u: Self::Fraction, v: Self::Fraction) -> i32;
     /// The opposite direction.
     fn negate(unit: Self::Unit) -> Self::Unit;
     /// Whether the angle between two directions is at most a right one.

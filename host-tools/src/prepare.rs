@@ -6,6 +6,7 @@ mod header;
 mod layout;
 mod loss;
 mod lustre;
+mod paint;
 mod unsupported;
 
 pub use layout::Blob;
@@ -162,6 +163,7 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
         K::triangle(settings, &snapped.corners(id), material).expect("a triangle that the grid and the kernel hold")
     };
     let mut lustres: Vec<Lustre> = Vec::new();
+    let textured = used.clone();
     let used: Vec<Material> = used
         .iter()
         .map(|&m| {
@@ -190,6 +192,7 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
             ids: &ids,
             materials: &used,
             lustres: &lustres,
+            paint: paint::paint(model, &ids, &textured),
         },
     )?;
     Ok(Prepared { blob, degenerates, grid })

@@ -5,6 +5,7 @@
 use glam::DVec3;
 use thiserror::Error;
 
+use super::paint;
 use crate::model::{Background, Falloff, Material, MaterialKind, Model, Projection};
 
 /// Something that no kernel has yet, and without which the picture would be another one.
@@ -60,8 +61,12 @@ pub fn missing(model: &Model) -> Vec<String> {
     if model.render.samples > 1 {
         missing.push("samples: more than one a pixel is not supported yet; drawn with one".into());
     }
-    if !model.colours.is_empty() {
-        missing.push("colours of vertices are not supported yet, and are left out".into());
+    let unplaced = paint::unplaced(model);
+    if unplaced > 0 {
+        missing.push(format!(
+            "triangles with over {} repeats of their texture, drawn without it: {unplaced}",
+            paint::MOST_REPEATS
+        ));
     }
     for material in &model.materials {
         let extras = extras(material);
@@ -80,7 +85,6 @@ fn extras(material: &Material) -> Vec<&'static str> {
         (material.kind == MaterialKind::Metal && material.weights.is_none(), "metal towards white at grazing angles"),
         (material.tinted_shadow, "tinted shadow"),
         (material.checker.is_some(), "checker"),
-        (material.texture.is_some(), "texture"),
     ];
     extras.into_iter().filter(|&(given, _)| given).map(|(_, name)| name).collect()
 }
@@ -125,13 +129,11 @@ mod tests {
         let glossy = Material { name: "c".into(), specular: Some(specular), ..Material::default() };
         let model = Model {
             materials: vec![rich, plain, glossy],
-            colours: vec![DVec3::ONE],
             render: RenderSettings { samples: 4, ..RenderSettings::default() },
             ..Model::default()
         };
         let expected = [
             "samples: more than one a pixel is not supported yet; drawn with one",
-            "colours of vertices are not supported yet, and are left out",
             "material `a\\nb` is drawn without what is not supported yet: dielectric, transparency, weights, checker",
             "material `c` is drawn without what is not supported yet: highlights",
         ];
