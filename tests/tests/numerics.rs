@@ -1,6 +1,9 @@
 //! The numbers at the ends of their documented ranges: every bound that core-rt states, measured against f64 or wide
 //! integers. One table holds all tolerances; an entry that is too generous fails as stale.
 
+#[path = "numerics/paint.rs"]
+mod paint;
+
 use core_rt::colour::{Colour, Rgb16, Transfer};
 use core_rt::exact::{Exact, Ray, Reciprocal, Width, Width14, Width20, Width29};
 use core_rt::kernel::{Bounds, Kernel, NONE};
@@ -15,7 +18,7 @@ use tests::rays::{self, Rays};
 
 /// The largest error of each operation, in the unit that its name gives. What is measured must be at most this, and at
 /// least a quarter of it.
-const TOLERANCES: [(&str, f64); 11] = [
+const TOLERANCES: [(&str, f64); 16] = [
     ("exact14 normalise, 2^-14", 3.0),
     ("exact29 normalise, 2^-30", 3.0),
     ("exact14 depth, 2^-13", 8.0),
@@ -27,6 +30,11 @@ const TOLERANCES: [(&str, f64); 11] = [
     ("exact14 point, grid units", 0.28125),
     ("exact20 point, grid units", 0.00390625),
     ("exact29 point, grid units", 0.00390625),
+    ("Grid14 blend, 0.5 and 2^-15 of the span", 1.0),
+    ("Grid29 blend, units", 0.5),
+    ("GridQ31 blend, units", 0.5),
+    ("exact14 texture coordinate, 2^-14 of the span", 8.0),
+    ("bilinear texture, 2^-16", 5.5),
 ];
 
 #[track_caller]
