@@ -133,7 +133,7 @@ impl Display for Need {
             Self::VertexColours => "vertex colours",
             Self::Texture => "textures",
             Self::Bilinear => "smooth textures",
-            Self::WideUvs => "wide indices of texture coordinates and colours",
+            Self::WideUvs => "wide texture coordinates",
             Self::Rgb888 => "RGB888 output",
             Self::Rgb565 => "RGB565 output",
             Self::Gray8 => "gray output",

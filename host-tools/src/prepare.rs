@@ -21,6 +21,7 @@ use thiserror::Error;
 
 use crate::grid::{Grid, GridError, Snapped};
 use crate::model::Model;
+use crate::textures::Texels;
 use crate::tree::{self, Tree, TreeOptions};
 
 /// How a scene is prepared.
@@ -30,6 +31,8 @@ pub struct Options {
     pub tree: TreeOptions,
     /// What is asked of the kernel's arithmetic.
     pub knobs: Knobs,
+    /// How texels are stored.
+    pub texels: Texels,
 }
 
 /// Why a scene cannot be prepared for a kernel.
@@ -192,7 +195,7 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
             ids: &ids,
             materials: &used,
             lustres: &lustres,
-            paint: paint::paint(model, &ids, &textured),
+            paint: paint::paint(model, &ids, &textured, options.texels),
         },
     )?;
     Ok(Prepared { blob, degenerates, grid })

@@ -249,7 +249,10 @@ fn help(board: &Board, scene: &Scene, header: &Header, sizes: &Sizes) -> String 
         help.push(format!("no smooth normals, which take {} bytes", sizes.normals));
     }
     if sizes.texels > 0 {
-        help.push(format!("smaller textures, whose texels take {} bytes", sizes.texels));
+        help.push(format!(
+            "smaller textures, whose texels take {} bytes (`--texture-size 64`, `--texels rgb565`)",
+            sizes.texels
+        ));
     }
     help.join("; ")
 }

@@ -12,6 +12,7 @@ use glam::DVec2;
 
 use super::lustre;
 use crate::model::{Filter, Model, Texture};
+use crate::textures::Texels;
 
 /// Repeats of a texture across one triangle that a blob holds; one less than its coordinates do, for what is beyond a whole
 /// number.
@@ -49,7 +50,7 @@ impl Paint {
 }
 
 /// The paint of the triangles `ids`, with the model's numbers of the `materials` that the blob has.
-pub(super) fn paint(model: &Model, ids: &[u32], materials: &[u32]) -> Paint {
+pub(super) fn paint(model: &Model, ids: &[u32], materials: &[u32], texels: Texels) -> Paint {
     let (uvs, uv_indices) = coordinates(model, ids);
     let (colours, colour_indices) = colours(model, ids);
     let mut paint = Paint { uv_indices, uvs, colour_indices, colours, ..Paint::default() };
@@ -64,7 +65,7 @@ pub(super) fn paint(model: &Model, ids: &[u32], materials: &[u32]) -> Paint {
             {
                 return *record;
             }
-            let record = paint.add(texture);
+            let record = paint.add(texture, texels);
             known.push((texture, record));
             record
         });
@@ -74,16 +75,11 @@ pub(super) fn paint(model: &Model, ids: &[u32], materials: &[u32]) -> Paint {
 }
 
 impl Paint {
-    /// Adds the texels of a texture, the bottom row first. A gray one has a byte a texel, which loses nothing.
-    fn add(&mut self, texture: &Texture) -> texture::Texture {
+    /// Adds the texels of a texture.
+    fn add(&mut self, texture: &Texture, texels: Texels) -> texture::Texture {
         let first = self.texels.len() as u32;
-        let is_gray = texture.texels.iter().all(|[red, green, blue]| red == green && green == blue);
-        for row in texture.texels.chunks(texture.size[0] as usize).rev() {
-            for texel in row {
-                self.texels.extend_from_slice(if is_gray { &texel[..1] } else { texel });
-            }
-        }
-        let format = if is_gray { texture::Texture::GRAY8 } else { texture::Texture::RGB888 };
+        let (format, bytes) = texels.encode(texture);
+        self.texels.extend(bytes);
         // The importer's bound is core-rt's.
         texture::Texture { first, size: texture.size.map(|side| side as u16), format, reserved: 0 }
     }
@@ -163,20 +159,5 @@ mod tests {
         assert_eq!(at([[-1e300, 0.0], [1e300, 0.0], [0.0; 2]]), None);
         assert_eq!(at([[1e300, 0.0]; 3]), Some([[0; 2]; 3]));
         assert!(at([[0.0; 2], [0.0, wide], [0.999_999_9, 0.0]]).unwrap().as_flattened().iter().all(|c| *c < UV_END));
-    }
-
-    #[test]
-    fn gray_textures_take_a_byte_a_texel_and_rows_go_up() {
-        let mut paint = Paint::default();
-        let gray = Texture { size: [2, 2], texels: vec![[1; 3], [2; 3], [3; 3], [4; 3]] };
-        let record = paint.add(&gray);
-        assert_eq!(
-            (record.first, record.format, paint.texels.as_slice()),
-            (0, texture::Texture::GRAY8, &[3, 4, 1, 2][..])
-        );
-        let red = Texture { size: [1, 1], texels: vec![[9, 0, 0]] };
-        let record = paint.add(&red);
-        assert_eq!((record.first, record.format), (4, texture::Texture::RGB888));
-        assert_eq!(paint.texels[4..], [9, 0, 0]);
     }
 }
