@@ -11,6 +11,7 @@ mod unsupported;
 
 pub use layout::Blob;
 pub use loss::{Keeper, Loss, losses};
+pub use paint::unplaced;
 pub use unsupported::{Unsupported, missing};
 
 use core_rt::arithmetic::Knobs;

@@ -9,7 +9,7 @@ use host_tools::engine::{self, ENGINES};
 use host_tools::import;
 use host_tools::model::{Background, Camera, Filter, Material, Model, Projection, RenderSettings, Texture, Triangle};
 use host_tools::picture::Picture;
-use host_tools::prepare::{Options, missing};
+use host_tools::prepare::{Options, unplaced};
 use host_tools::reference::Reference;
 use tests::random::SplitMix64;
 
@@ -123,7 +123,7 @@ fn odd_sizes_and_many_repeats() {
         let most = (200_000.0 / f64::from(side[0])).min(1000.0);
         for repeats in [0.01, 1.0, 37.5, most] {
             let model = ground(side, repeats, Filter::Bilinear);
-            assert_eq!(missing(&model), Vec::<String>::new());
+            assert_eq!(unplaced(&model), None);
             let truth = truth(&model);
             for kernel in ["exact29", "f64", "hanika-cons"] {
                 let found = apart(&model, kernel, &truth);
@@ -139,7 +139,7 @@ fn odd_sizes_and_many_repeats() {
 fn more_repeats_than_a_blob_holds_are_said() {
     let model = ground([2, 2], 1023.0, Filter::Nearest);
     let expected = "triangles with over 1022 repeats of their texture, drawn without it: 2";
-    assert_eq!(missing(&model), [expected]);
+    assert_eq!(unplaced(&model).as_deref(), Some(expected));
     let [first, ..] = rendered(&model, "exact29").pixels()[96 / 2 * 128..] else { panic!("pixels") };
     assert!(first.iter().all(|&channel| channel == 231), "0.8 of white light: {first:?}");
 }

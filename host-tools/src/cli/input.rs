@@ -20,7 +20,7 @@ use crate::files;
 use crate::import::{self, Imported};
 use crate::model::Model;
 use crate::picture::{SIZES, size_is_allowed};
-use crate::prepare::{Blob, Degenerates, Options, losses, missing};
+use crate::prepare::{Blob, Degenerates, Options, losses, missing, unplaced};
 use crate::textures::{self, Texels};
 use crate::tree::TreeOptions;
 
@@ -202,7 +202,8 @@ impl SceneArguments {
     /// Reads and prepares a model for the kernel asked for.
     fn load_model(&self, default: &'static dyn Engine) -> Result<Scene, Failure> {
         let model = self.model()?;
-        missing(&model).iter().for_each(|what| warn(format_args!("{}: {what}", self.scene.display())));
+        let lines = missing(&model).into_iter().chain(unplaced(&model));
+        lines.for_each(|what| warn(format_args!("{}: {what}", self.scene.display())));
         let engine = self.engine().unwrap_or(default);
         let prepared = engine
             .prepare(&model, &self.options())

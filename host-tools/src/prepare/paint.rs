@@ -16,7 +16,7 @@ use crate::textures::Texels;
 
 /// Repeats of a texture across one triangle that a blob holds; one less than its coordinates do, for what is beyond a whole
 /// number.
-pub(super) const MOST_REPEATS: i32 = (UV_END >> UV_BITS) - 2;
+const MOST_REPEATS: i32 = (UV_END >> UV_BITS) - 2;
 
 /// The sections of paint.
 #[derive(Debug, Default)]
@@ -85,9 +85,12 @@ impl Paint {
     }
 }
 
-/// How many triangles have more repeats of their texture than a blob holds.
-pub(super) fn unplaced(model: &Model) -> usize {
-    model.uvs.iter().flatten().filter(|corners| placed(corners).is_none()).count()
+/// What of a model is drawn without its texture because a blob does not hold so many repeats: a line of text.
+#[must_use]
+pub fn unplaced(model: &Model) -> Option<String> {
+    let count = model.uvs.iter().flatten().filter(|corners| placed(corners).is_none()).count();
+    (count > 0)
+        .then(|| format!("triangles with over {MOST_REPEATS} repeats of their texture, drawn without it: {count}"))
 }
 
 /// Texture coordinates in Q20, each rounded to nearest, less the whole repeats that all three have; `None` where they are too

@@ -5,7 +5,6 @@
 use glam::DVec3;
 use thiserror::Error;
 
-use super::paint;
 use crate::model::{Background, Falloff, Material, MaterialKind, Model, Projection};
 
 /// Something that no kernel has yet, and without which the picture would be another one.
@@ -60,13 +59,6 @@ pub fn missing(model: &Model) -> Vec<String> {
     let mut missing = Vec::new();
     if model.render.samples > 1 {
         missing.push("samples: more than one a pixel is not supported yet; drawn with one".into());
-    }
-    let unplaced = paint::unplaced(model);
-    if unplaced > 0 {
-        missing.push(format!(
-            "triangles with over {} repeats of their texture, drawn without it: {unplaced}",
-            paint::MOST_REPEATS
-        ));
     }
     for material in &model.materials {
         let extras = extras(material);
