@@ -32,8 +32,8 @@ pub struct Options {
     pub tree: TreeOptions,
     /// What is asked of the kernel's arithmetic.
     pub knobs: Knobs,
-    /// How texels are stored.
-    pub texels: Texels,
+    /// How texels are stored; `None` for the way that suits the output.
+    pub texels: Option<Texels>,
 }
 
 /// Why a scene cannot be prepared for a kernel.
@@ -196,7 +196,7 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
             ids: &ids,
             materials: &used,
             lustres: &lustres,
-            paint: paint::paint(model, &ids, &textured, options.texels),
+            paint: paint::paint(model, &ids, &textured, options.texels.unwrap_or_default()),
         },
     )?;
     Ok(Prepared { blob, degenerates, grid })

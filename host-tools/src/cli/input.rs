@@ -75,7 +75,7 @@ struct TextureArguments {
     )]
     texture_size: Option<u32>,
 
-    /// Store texels so; those of gray textures take a byte in any case [default: rgb888]
+    /// Store texels so; those of gray textures take a byte in any case [default: as the output's pixels]
     #[arg(long, value_name = "FORMAT", value_enum)]
     texels: Option<Texels>,
 }
@@ -267,7 +267,7 @@ impl SceneArguments {
         Options {
             tree: self.leaf.map_or(tree, |leaf_max| TreeOptions { leaf_max, leaf_always: true, ..tree }),
             knobs: self.knobs.into(),
-            texels: self.textures.texels.unwrap_or_default(),
+            texels: self.textures.texels,
         }
     }
 }

@@ -303,7 +303,7 @@ pub(crate) fn read(bytes: &[u8]) -> Blob {
     let (coloured, textured) = (header.needs >> 21 & 1 == 1, header.needs >> 22 & 1 == 1);
     let corner_count = |has: bool| if has { triangle_count } else { 0 };
     let none = if wide(24) == 4 { u32::MAX } else { u16::MAX.into() };
-    let mut corner_indices =
+    let corner_indices =
         |c: &mut Cursor<'_>, has: bool| c.section(corner_count(has), |c| c.three(|c| c.unsigned(wide(24)) as u32));
     let uv_indices = corner_indices(&mut cursor, textured);
     let uvs = cursor.section(uv_count, |c| [c.signed(4), c.signed(4)]);
