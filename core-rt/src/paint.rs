@@ -2,8 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::blob::{BlobError, Header};
 use crate::colour::Albedo;
-use crate::profile::{Need, Needs};
+use crate::profile::{Need, Profile};
 use crate::section::{Integers, Reader};
 use crate::texture::{Texture, UV_END, Uv};
 
@@ -36,32 +37,50 @@ pub struct Paint<'a> {
 }
 
 impl<'a> Paint<'a> {
-    /// The sections of a scene of so many triangles and materials; `None` where they are not there, or are there in vain.
-    pub(crate) fn read(
-        reader: &mut Reader<'a>,
-        counts: &PaintCounts,
-        needs: Needs,
-        triangles: u32,
-        materials: u32,
-    ) -> Option<Self> {
+    /// No paint.
+    const NONE: Self = Self {
+        uv_indices: Integers::Narrow(&[]),
+        uvs: &[],
+        colour_indices: Integers::Narrow(&[]),
+        colours: &[],
+        textures: &[],
+        texels: &[],
+    };
+
+    /// The sections of a scene; `None` where they are not there, or are there in vain.
+    pub(crate) fn read<P: Profile>(reader: &mut Reader<'a>, header: &Header) -> Option<Self> {
+        let (needs, counts) = (header.needs, &header.counts);
         let (textured, coloured) = (needs.has(Need::Texture), needs.has(Need::VertexColours));
-        let consistent = textured == (counts.uvs > 0)
-            && textured == (counts.texels > 0)
-            && coloured == (counts.colours > 0)
+        let PaintCounts { uvs, colours, texels } = counts.paint;
+        let consistent = textured == (uvs > 0)
+            && textured == (texels > 0)
+            && coloured == (colours > 0)
             && (textured || !needs.has(Need::Bilinear));
         if !consistent {
             return None;
         }
+        // What the profile lacks the scene was found not to need.
+        if !P::NEEDS.paint() {
+            return Some(Self::NONE);
+        }
         let wide = needs.has(Need::WideUvs);
-        let indices = |has: bool| if has { triangles.checked_mul(3) } else { Some(0) };
+        let indices = |has: bool| if has { counts.triangles.checked_mul(3) } else { Some(0) };
         Some(Self {
             uv_indices: reader.integers(indices(textured)?, wide)?,
-            uvs: reader.records(counts.uvs)?,
+            uvs: reader.records(uvs)?,
             colour_indices: reader.integers(indices(coloured)?, wide)?,
-            colours: reader.records(counts.colours)?,
-            textures: reader.records(if textured { materials } else { 0 })?,
-            texels: reader.records(counts.texels)?,
+            colours: reader.records(colours)?,
+            textures: reader.records(if textured { counts.materials } else { 0 })?,
+            texels: reader.records(texels)?,
         })
+    }
+
+    /// Checks what the sections of a scene of so many triangles say.
+    pub(crate) fn check(&self, triangles: u32) -> Result<(), BlobError> {
+        if let Some(index) = (0..triangles).find(|&index| !self.exists(index)) {
+            return Err(BlobError::Triangle { index });
+        }
+        if self.in_range() { Ok(()) } else { Err(BlobError::Shading) }
     }
 
     /// The texture coordinates of a triangle's vertices; `None` where it has none.
@@ -79,13 +98,13 @@ impl<'a> Paint<'a> {
     }
 
     /// Whether the coordinates and the colours of a triangle exist, as far as there are any.
-    pub(crate) fn exists(&self, triangle: u32) -> bool {
+    fn exists(&self, triangle: u32) -> bool {
         let uvs = self.uv_indices.is_empty() || self.uv_indices.is_none(triangle) || self.uvs_of(triangle).is_some();
         uvs && (self.colour_indices.is_empty() || self.colours_of(triangle).is_some())
     }
 
     /// Whether every coordinate is in range and every texture is among the texels.
-    pub(crate) fn in_range(&self) -> bool {
+    fn in_range(&self) -> bool {
         self.uvs.as_flattened().iter().all(|c| (0..UV_END).contains(c))
             && self.textures.iter().all(|texture| texture.is_within(self.texels.len()))
     }

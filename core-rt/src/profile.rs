@@ -199,6 +199,12 @@ impl Needs {
         self.has(Need::Reflection) || self.has(Need::Refraction)
     }
 
+    /// Whether surfaces are painted.
+    #[must_use]
+    pub const fn paint(self) -> bool {
+        self.has(Need::Texture) || self.has(Need::VertexColours)
+    }
+
     /// The needs of the set.
     pub fn iter(self) -> impl Iterator<Item = Need> {
         Need::ALL.into_iter().filter(move |&need| self.has(need))

@@ -85,8 +85,11 @@ impl<'a, P: Profile> Scene<'a, P> {
         }
         let settings = P::Kernel::settings(&header.arithmetic).ok_or(BlobError::Header)?;
         let camera = camera::<P::Kernel>(&header).ok_or(BlobError::Header)?;
-        let (bvh, shading) = view(&header, sections).ok_or(BlobError::Sections)?;
+        let (bvh, shading) = view::<P>(&header, sections).ok_or(BlobError::Sections)?;
         check(&header, settings, &bvh, &shading)?;
+        if P::NEEDS.paint() {
+            shading.paint.check(header.counts.triangles)?;
+        }
         Ok(Self { header, settings, camera, bvh, shading })
     }
 }
@@ -108,7 +111,7 @@ fn camera<K: Kernel>(header: &Header) -> Option<Camera<K::Word>> {
 }
 
 /// The sections, if they fill the body exactly and agree with each other.
-fn view<'a, K: Kernel>(header: &Header, sections: &'a [u8]) -> Option<(Bvh<'a, K>, Shading<'a, K>)> {
+fn view<'a, P: Profile>(header: &Header, sections: &'a [u8]) -> Option<(Bvh<'a, P::Kernel>, Shading<'a, P::Kernel>)> {
     let counts = &header.counts;
     let smooth = header.needs.has(Need::SmoothNormals);
     let consistent = counts.triangles > 0
@@ -127,7 +130,7 @@ fn view<'a, K: Kernel>(header: &Header, sections: &'a [u8]) -> Option<(Bvh<'a, K
     let shading = Shading {
         normal_indices: reader.integers(counts.smooth.checked_mul(3)?, header.needs.has(Need::WideNormals))?,
         normals: reader.records(counts.normals)?,
-        paint: Paint::read(&mut reader, &counts.paint, header.needs, counts.triangles, counts.materials)?,
+        paint: Paint::read::<P>(&mut reader, header)?,
         materials: reader.records(counts.materials)?,
         lustres: reader.records(counts.lustres)?,
         lights: reader.records(counts.lights)?,

@@ -32,9 +32,7 @@ pub(crate) fn check<K: Kernel>(
         let normals_exist = shading.normal_indices.is_empty()
             || shading.normal_indices.triple(index).iter().all(|&n| (n as usize) < shading.normals.len())
             || shading.is_flat(index);
-        let paint_exists = shading.paint.exists(index);
-        if !(consistent && id_exists && normals_exist && paint_exists && (material as usize) < shading.materials.len())
-        {
+        if !(consistent && id_exists && normals_exist && (material as usize) < shading.materials.len()) {
             return Err(BlobError::Triangle { index });
         }
     }
@@ -46,7 +44,7 @@ pub(crate) fn check<K: Kernel>(
     let lustres = shading.lustres.iter().all(lustre_is_valid)
         && shading.materials.iter().all(|m: &Material| usize::from(m.lustre) <= shading.lustres.len());
     let normals = shading.normals.iter().all(K::Space::is_unit);
-    if !(in_range && lights && lustres && normals && shading.paint.in_range()) {
+    if !(in_range && lights && lustres && normals) {
         return Err(BlobError::Shading);
     }
     match used(header, shading).first_missing_in(header.needs) {
