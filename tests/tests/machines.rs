@@ -26,7 +26,7 @@ use tests::{scenes, shared};
 
 const SIZE: [u32; 2] = [64, 48];
 
-const KERNELS: [&str; 1] = ["exact14"];
+const KERNELS: [&str; 3] = ["exact14", "exact29", "f32"];
 
 const LIMIT: Duration = Duration::from_secs(120);
 
