@@ -110,8 +110,11 @@ fn camera<K: Kernel>(header: &Header) -> Option<Camera<K::Word>> {
     Camera::new(&header.camera, header.size, K::DIRECTION_BITS)
 }
 
+/// Geometry, and everything else.
+type View<'a, K> = (Bvh<'a, K>, Shading<'a, K>);
+
 /// The sections, if they fill the body exactly and agree with each other.
-fn view<'a, P: Profile>(header: &Header, sections: &'a [u8]) -> Option<(Bvh<'a, P::Kernel>, Shading<'a, P::Kernel>)> {
+fn view<'a, P: Profile>(header: &Header, sections: &'a [u8]) -> Option<View<'a, P::Kernel>> {
     let counts = &header.counts;
     let smooth = header.needs.has(Need::SmoothNormals);
     let consistent = counts.triangles > 0

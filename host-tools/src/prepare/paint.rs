@@ -99,7 +99,7 @@ fn placed(corners: &[DVec2; 3]) -> Option<[Uv; 3]> {
     let [a, b, c] = *corners;
     let low = a.min(b).min(c).floor();
     let span = a.max(b).max(c) - low;
-    if !(span.max_element() <= f64::from(MOST_REPEATS)) {
+    if span.max_element() > f64::from(MOST_REPEATS) {
         return None;
     }
     let fixed = |uv: DVec2| (uv - low).to_array().map(|c| (c * f64::from(1 << UV_BITS) + 0.5).floor() as i32);

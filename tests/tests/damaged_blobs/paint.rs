@@ -10,7 +10,7 @@ use tests::painted::sample;
 
 use crate::{Damage, for_every_kernel, verdict};
 
-for_every_kernel!(the_sample_is_good, broken_paint, paint_at_the_ends_of_all_ranges);
+for_every_kernel!(the_sample_is_good, broken_paint, paint_at_the_ends_of_all_ranges, coordinates_without_a_texture);
 
 /// The narrow index that stands for nothing.
 const NONE: u32 = u16::MAX as u32;
@@ -107,4 +107,11 @@ fn paint_at_the_ends_of_all_ranges<K: Kernel>() {
             }
         }
     }
+}
+
+/// A material without a texture may have triangles with coordinates: they mean nothing.
+fn coordinates_without_a_texture<K: Kernel>() {
+    let mut draft = Draft::<K>::read(sample::<K>().bytes()).expect("a good blob");
+    draft.textures.fill(Texture::default());
+    assert_eq!(verdict::<K>(draft.write().bytes()), Ok(()));
 }
