@@ -56,7 +56,7 @@ fn the_gallery_by_every_kernel() {
             for engine in ENGINES {
                 let found = apart(&model, engine.name(), &truth);
                 let per_mille = |count: u64| count as f64 * 1000.0 / f64::from(size[0] * size[1]);
-                let (over_64, over_4) = (per_mille(found.over_64.into()), per_mille(found.over_4.into()));
+                let (over_64, over_4) = (per_mille(found.over_64), per_mille(found.over_4));
                 let psnr = found.psnr.unwrap_or(f64::INFINITY);
                 let told = format!(
                     "{filter:?} {size:?} {}: over 64 {}, over 4 {}, over 1 {}, {psnr:.1} dB",
