@@ -20,6 +20,7 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+mod albedo;
 pub mod arithmetic;
 pub mod blob;
 pub mod bvh;
@@ -30,6 +31,7 @@ pub mod hanika;
 pub mod kernel;
 mod light;
 pub mod num;
+pub mod paint;
 pub mod profile;
 pub mod record;
 pub mod render;
@@ -39,4 +41,5 @@ mod shade;
 pub mod space;
 mod srgb;
 pub mod stats;
+pub mod texture;
 pub mod whitted;

@@ -62,7 +62,7 @@ pub enum Need {
     Texture = 1 << 22,
     /// Pictures on surfaces, smooth between texels.
     Bilinear = 1 << 23,
-    /// More than 2^16 - 1 texture coordinates.
+    /// More than 2^16 - 1 texture coordinates or colours of vertices.
     WideUvs = 1 << 24,
     /// Pixels of three bytes.
     Rgb888 = 1 << 25,
@@ -201,6 +201,12 @@ impl Needs {
     #[must_use]
     pub const fn branches(self) -> bool {
         self.has(Need::Reflection) || self.has(Need::Refraction)
+    }
+
+    /// Whether surfaces are painted.
+    #[must_use]
+    pub const fn paint(self) -> bool {
+        self.has(Need::Texture) || self.has(Need::VertexColours)
     }
 
     /// The needs of the set.

@@ -4,6 +4,7 @@ use crate::blob::{BlobError, Header, check, open};
 use crate::bvh::Bvh;
 use crate::camera::Camera;
 use crate::kernel::Kernel;
+use crate::paint::Paint;
 use crate::profile::{Need, Profile};
 use crate::record::{Checker, Light, Lustre, Material};
 use crate::section::{Integers, Reader};
@@ -22,6 +23,8 @@ pub struct Shading<'a, K: Kernel> {
     pub normal_indices: Integers<'a>,
     /// Unit normals.
     pub normals: &'a [<K::Space as Space>::Normal],
+    /// Textures and colours of vertices.
+    pub paint: Paint<'a>,
     /// Materials.
     pub materials: &'a [Material],
     /// What is more than matt of them.
@@ -37,11 +40,7 @@ impl<K: Kernel> Shading<'_, K> {
     #[inline]
     #[must_use]
     pub fn is_flat(&self, index: u32) -> bool {
-        let flat = match self.normal_indices {
-            Integers::Narrow(_) => u16::MAX.into(),
-            Integers::Wide(_) => u32::MAX,
-        };
-        self.normal_indices.triple(index) == [flat; 3]
+        self.normal_indices.is_none(index)
     }
 
     /// The normals of a triangle's vertices; `None` for a flat one.
@@ -88,8 +87,11 @@ impl<'a, P: Profile> Scene<'a, P> {
         }
         let settings = P::Kernel::settings(&header.arithmetic).ok_or(BlobError::Header)?;
         let camera = camera::<P::Kernel>(&header).ok_or(BlobError::Header)?;
-        let (bvh, shading) = view(&header, sections).ok_or(BlobError::Sections)?;
+        let (bvh, shading) = view::<P>(&header, sections).ok_or(BlobError::Sections)?;
         check(&header, settings, &bvh, &shading)?;
+        if P::NEEDS.paint() {
+            shading.paint.check(header.counts.triangles)?;
+        }
         Ok(Self { header, settings, camera, bvh, shading })
     }
 }
@@ -110,8 +112,11 @@ fn camera<K: Kernel>(header: &Header) -> Option<Camera<K::Word>> {
     Camera::new(&header.camera, header.size, K::DIRECTION_BITS)
 }
 
+/// Geometry, and everything else.
+type View<'a, K> = (Bvh<'a, K>, Shading<'a, K>);
+
 /// The sections, if they fill the body exactly and agree with each other.
-fn view<'a, K: Kernel>(header: &Header, sections: &'a [u8]) -> Option<(Bvh<'a, K>, Shading<'a, K>)> {
+fn view<'a, P: Profile>(header: &Header, sections: &'a [u8]) -> Option<View<'a, P::Kernel>> {
     let counts = &header.counts;
     let smooth = header.needs.has(Need::SmoothNormals);
     let consistent = counts.triangles > 0
@@ -130,6 +135,7 @@ fn view<'a, K: Kernel>(header: &Header, sections: &'a [u8]) -> Option<(Bvh<'a, K
     let shading = Shading {
         normal_indices: reader.integers(counts.smooth.checked_mul(3)?, header.needs.has(Need::WideNormals))?,
         normals: reader.records(counts.normals)?,
+        paint: Paint::read::<P>(&mut reader, header)?,
         materials: reader.records(counts.materials)?,
         lustres: reader.records(counts.lustres)?,
         checkers: reader.records(counts.checkers)?,

@@ -35,6 +35,17 @@ impl Integers<'_> {
         [self.get(first), self.get(first.wrapping_add(1)), self.get(first.wrapping_add(2))]
     }
 
+    /// Whether three in a row stand for nothing: they are the largest of their width.
+    #[inline]
+    #[must_use]
+    pub fn is_none(&self, index: u32) -> bool {
+        let none = match self {
+            Self::Narrow(_) => u16::MAX.into(),
+            Self::Wide(_) => u32::MAX,
+        };
+        self.triple(index) == [none; 3]
+    }
+
     /// How many there are.
     #[must_use]
     pub fn len(&self) -> usize {

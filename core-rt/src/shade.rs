@@ -7,8 +7,9 @@
 //!
 //! The shading normal is brought to the geometric normal's side, and that one to the viewer's.
 
+use crate::albedo::albedo;
 use crate::bvh::Stack;
-use crate::colour::{Albedo, Colour, towards_white};
+use crate::colour::{Colour, towards_white};
 use crate::kernel::{Kernel, NONE, Surface};
 use crate::light::arriving;
 use crate::profile::{Need, Profile};
@@ -58,7 +59,7 @@ pub(crate) fn shade<'a, P: Profile>(
         }
         _ => 0,
     };
-    let albedo = albedo(scene, material, &surface);
+    let albedo = albedo(scene, hit, material, &surface);
     let shine = lustre.zip(along).filter(|(lustre, _)| P::NEEDS.highlights() && !lustre.specular_is_black());
     let mut colour = ColourOf::<P>::default();
     // What gives nothing back need not be lit.
@@ -86,17 +87,6 @@ pub(crate) fn shade<'a, P: Profile>(
         colour = colour.plus(Colour::constant(&material.emission));
     }
     Some(Shaded { surface, normal, cosine, lustre, whiteness, colour })
-}
-
-/// What a point gives back of diffuse light.
-fn albedo<P: Profile>(scene: &Scene<'_, P>, material: &Material, surface: &Surface<SpaceOf<P>>) -> Albedo {
-    if P::NEEDS.has(Need::Checker)
-        && let Some(checker) = scene.shading.checkers.get(usize::from(material.checker).wrapping_sub(1))
-        && SpaceOf::<P>::is_odd(surface.point, SpaceOf::<P>::longest(surface.normal), checker)
-    {
-        return checker.other;
-    }
-    material.albedo
 }
 
 /// How much of a light is seen in a highlight.

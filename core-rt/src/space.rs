@@ -90,6 +90,8 @@ pub trait Space: Copy + Debug + Default + Send + Sync + 'static {
     ) -> Self::Point;
     /// Whether the cosine of the angle between two directions is above 1/4.
     fn near(a: Self::Unit, b: Self::Unit) -> bool;
+    /// `(1 - u - v) a + u b + v c` of numbers from 0 to below 2^30, rounded to nearest.
+    fn blend(corners: Triple<i32>, u: Self::Fraction, v: Self::Fraction) -> i32;
     /// The opposite direction.
     fn negate(unit: Self::Unit) -> Self::Unit;
     /// Whether the angle between two directions is at most a right one.

@@ -80,6 +80,13 @@ impl<F: Real> Space for FloatSpace<F> {
         dot(a, b) > F::ONE.ldexp(-2)
     }
 
+    /// Differences are exact before they become floats.
+    #[inline]
+    fn blend([a, b, c]: Triple<i32>, u: F, v: F) -> i32 {
+        let moved = F::from_i32(b - a) * u + F::from_i32(c - a) * v;
+        (F::from_i32(a) + moved + F::ONE.ldexp(-1)).floor().to_i32()
+    }
+
     #[inline]
     fn negate(unit: Triple<F>) -> Triple<F> {
         unit.map(|c| -c)

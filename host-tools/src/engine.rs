@@ -55,6 +55,10 @@ pub struct Sizes {
     pub ids: u64,
     /// Normals and their indices.
     pub normals: u64,
+    /// Texture coordinates and colours of vertices, with their indices.
+    pub paint: u64,
+    /// Texels.
+    pub texels: u64,
     /// Materials and lights.
     pub shading: u64,
 }
@@ -86,6 +90,11 @@ impl<K: Measure> Engine for Of<K> {
             triangles: size_of_val(scene.bvh.triangles) as u64,
             ids: scene.bvh.ids.size() as u64,
             normals: (size_of_val(scene.shading.normals) + scene.shading.normal_indices.size()) as u64,
+            paint: (scene.shading.paint.uv_indices.size()
+                + size_of_val(scene.shading.paint.uvs)
+                + scene.shading.paint.colour_indices.size()
+                + size_of_val(scene.shading.paint.colours)) as u64,
+            texels: scene.shading.paint.texels.len() as u64,
             shading: (size_of_val(scene.shading.materials) + size_of_val(scene.shading.lights)) as u64,
         };
         Ok((scene.header, sizes))

@@ -15,5 +15,6 @@ pub mod picture;
 pub mod prepare;
 pub mod reference;
 pub mod render;
+pub mod textures;
 pub mod trace;
 pub mod tree;

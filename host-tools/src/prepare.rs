@@ -6,10 +6,12 @@ mod header;
 mod layout;
 mod loss;
 mod lustre;
+mod paint;
 mod unsupported;
 
 pub use layout::Blob;
 pub use loss::{Keeper, Loss, losses};
+pub use paint::unplaced;
 pub use unsupported::{Unsupported, missing};
 
 use core_rt::arithmetic::Knobs;
@@ -20,6 +22,7 @@ use thiserror::Error;
 
 use crate::grid::{Grid, GridError, Snapped};
 use crate::model::Model;
+use crate::textures::Texels;
 use crate::tree::{self, Tree, TreeOptions};
 
 /// How a scene is prepared.
@@ -29,6 +32,8 @@ pub struct Options {
     pub tree: TreeOptions,
     /// What is asked of the kernel's arithmetic.
     pub knobs: Knobs,
+    /// How texels are stored; `None` for the way that suits the output.
+    pub texels: Option<Texels>,
 }
 
 /// Why a scene cannot be prepared for a kernel.
@@ -162,6 +167,7 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
         K::triangle(settings, &snapped.corners(id), material).expect("a triangle that the grid and the kernel hold")
     };
     let (mut lustres, mut checkers) = (Vec::new(), Vec::new());
+    let textured = used.clone();
     let used: Vec<Material> = used
         .iter()
         .map(|&m| {
@@ -184,6 +190,7 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
             materials: &used,
             lustres: &lustres,
             checkers: &checkers,
+            paint: paint::paint(model, &ids, &textured, options.texels.unwrap_or_default()),
         },
     )?;
     Ok(Prepared { blob, degenerates, grid })

@@ -1,7 +1,7 @@
 //! Blobs taken apart and put together, so that a test can damage one exactly where it means to.
 
 use core_rt::blob::{Header, MAGIC, PREFIX_SIZE, Prefix, TRAILER_SIZE, VERSION, crc32};
-use core_rt::colour::Rgb888;
+use core_rt::colour::{Albedo, Rgb888};
 use core_rt::kernel::{Kernel, Vertices};
 use core_rt::profile::{Full, Need};
 use core_rt::record::{Checker, Light, Lustre, Material, Record};
@@ -9,6 +9,7 @@ use core_rt::render::{Tile, Workspace, render_tile};
 use core_rt::scene::{MAX_BRANCHES, MAX_DEPTH, Scene};
 use core_rt::space::Space;
 use core_rt::stats::Counts;
+use core_rt::texture::{Texture, Uv};
 use host_tools::import::{Embedded, load_from};
 use host_tools::prepare::{Blob, Options, prepare};
 use host_tools::tree::TreeOptions;
@@ -29,6 +30,18 @@ pub struct Draft<K: Kernel> {
     pub normal_indices: Vec<u32>,
     /// Unit normals.
     pub normals: Vec<<K::Space as Space>::Normal>,
+    /// Three a triangle, or none.
+    pub uv_indices: Vec<u32>,
+    /// Texture coordinates.
+    pub uvs: Vec<Uv>,
+    /// Three a triangle, or none.
+    pub colour_indices: Vec<u32>,
+    /// Colours of vertices.
+    pub colours: Vec<Albedo>,
+    /// One a material, or none.
+    pub textures: Vec<Texture>,
+    /// The texels of all.
+    pub texels: Vec<u8>,
     /// Materials.
     pub materials: Vec<Material>,
     /// What is more than matt of them.
@@ -54,6 +67,9 @@ impl<K: Kernel> Draft<K> {
         let mut rest = bytes.get(PREFIX_SIZE..bytes.len().checked_sub(TRAILER_SIZE)?)?;
         let (header, _) = postcard::take_from_bytes(&take::<u8>(&mut rest, prefix.header_size)?).ok()?;
         let Header { needs, counts, .. } = header;
+        let if_needed = |need: Need, count: u32| if needs.has(need) { count } else { 0 };
+        let corners = |need: Need| if_needed(need, counts.triangles).checked_mul(3);
+        let wide_uvs = needs.has(Need::WideUvs);
         Some(Self {
             header,
             nodes: take(&mut rest, counts.nodes)?,
@@ -61,6 +77,12 @@ impl<K: Kernel> Draft<K> {
             ids: take_integers(&mut rest, counts.triangles, needs.has(Need::WideIds))?,
             normal_indices: take_integers(&mut rest, counts.smooth.checked_mul(3)?, needs.has(Need::WideNormals))?,
             normals: take(&mut rest, counts.normals)?,
+            uv_indices: take_integers(&mut rest, corners(Need::Texture)?, wide_uvs)?,
+            uvs: take(&mut rest, counts.paint.uvs)?,
+            colour_indices: take_integers(&mut rest, corners(Need::VertexColours)?, wide_uvs)?,
+            colours: take(&mut rest, counts.paint.colours)?,
+            textures: take(&mut rest, if_needed(Need::Texture, counts.materials))?,
+            texels: take(&mut rest, counts.paint.texels)?,
             materials: take(&mut rest, counts.materials)?,
             lustres: take(&mut rest, counts.lustres)?,
             checkers: take(&mut rest, counts.checkers)?,
@@ -80,6 +102,12 @@ impl<K: Kernel> Draft<K> {
         put_integers(&mut bytes, &self.ids, self.header.needs.has(Need::WideIds));
         put_integers(&mut bytes, &self.normal_indices, self.header.needs.has(Need::WideNormals));
         put(&mut bytes, &self.normals);
+        put_integers(&mut bytes, &self.uv_indices, self.header.needs.has(Need::WideUvs));
+        put(&mut bytes, &self.uvs);
+        put_integers(&mut bytes, &self.colour_indices, self.header.needs.has(Need::WideUvs));
+        put(&mut bytes, &self.colours);
+        put(&mut bytes, &self.textures);
+        put(&mut bytes, &self.texels);
         put(&mut bytes, &self.materials);
         put(&mut bytes, &self.lustres);
         put(&mut bytes, &self.checkers);

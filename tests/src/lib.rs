@@ -6,6 +6,7 @@ pub mod fuzz;
 pub mod meshes;
 pub mod octants;
 pub mod oracle;
+pub mod painted;
 pub mod random;
 pub mod rays;
 pub mod scenes;

@@ -6,16 +6,18 @@
 //! all the same.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use firmware_rt::board::{BOARDS, Board};
+use glam::{DVec2, DVec3};
 use host_tools::decimate::decimate;
 use host_tools::emulate::Run;
 use host_tools::emulate::elf::Elf;
 use host_tools::emulate::firmware::Wanted;
 use host_tools::engine;
 use host_tools::import;
-use host_tools::model::Model;
+use host_tools::model::{Lobe, Model, Specular, Texture};
 use host_tools::picture::Picture;
 use host_tools::prepare::{Blob, Options};
 use rayon::prelude::*;
@@ -59,9 +61,10 @@ fn all() -> Vec<(&'static str, Option<Model>)> {
     let bench = import::load(&root("scenes/bench-1k/scene.toml")).expect("the performance scene").model;
     let real =
         SHARED.map(|(name, path)| (name, shared::scene(path).map(|path| import::load(&path).expect("a model").model)));
+    let textures = import::load(&root("scenes/gallery/textures/scene.toml")).expect("a scene of the gallery").model;
     // Another transfer is another firmware.
     let own = scenes::all().into_iter().filter(|&(name, _)| name != "linear").map(|(name, model)| (name, Some(model)));
-    let mut all: Vec<_> = own.chain([("bench-1k", Some(bench))]).chain(real).collect();
+    let mut all: Vec<_> = own.chain([("bench-1k", Some(bench)), ("textures", Some(textures))]).chain(real).collect();
     for (_, model) in &mut all {
         *model = model.take().map(|mut model| {
             model.render.size = SIZE;
@@ -76,6 +79,13 @@ fn needing_everything(all: &[(&str, Option<Model>)]) -> Model {
     let model = |wanted: &str| all.iter().find(|(name, _)| *name == wanted).and_then(|(_, model)| model.clone());
     let mut everything = model("demo").expect("it is a part of the project");
     everything.lights.extend(model("several-lights").expect("it is made").lights);
+    everything.render.ambient = DVec3::ONE;
+    everything.colours = vec![DVec3::X; everything.positions.len()];
+    everything.uvs = vec![Some([DVec2::ZERO; 3]); everything.triangles.len()];
+    for material in &mut everything.materials {
+        material.texture = Some(Arc::new(Texture { size: [1, 1], texels: vec![[255; 3]] }));
+        material.specular = Some(Specular { lobe: Lobe::BlinnPhong, exponent: 50, colour: DVec3::ONE });
+    }
     everything
 }
 

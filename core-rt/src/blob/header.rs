@@ -7,6 +7,7 @@ use super::BlobError;
 use crate::arithmetic::Arithmetic;
 use crate::camera::CameraHeader;
 use crate::colour::{Radiance, Transfer};
+use crate::paint::PaintCounts;
 use crate::profile::Needs;
 use crate::section::{ALIGN, Reader};
 
@@ -51,6 +52,8 @@ pub struct Counts {
     pub smooth: u32,
     /// Unit normals.
     pub normals: u32,
+    /// Textures and colours of vertices.
+    pub paint: PaintCounts,
     /// Materials.
     pub materials: u32,
     /// What is more than matt of them.

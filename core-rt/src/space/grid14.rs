@@ -120,6 +120,17 @@ impl Space for Grid14 {
         dot_q28(a, b) > 1 << 26
     }
 
+    /// By the differences, which are below 2^30, rounded to 15 bits and shifted by at most 15: within half a unit and 2^-15 of
+    /// the largest of them. Their products with weights of at most 2^14 are at most 2^29, and their sum 2^30. No hit's weights
+    /// sum to more than 1 + 2^-11; what the shift to the left would lose of a larger sum is lost.
+    #[inline]
+    fn blend([a, b, c]: Triple<i32>, u: I2F14, v: I2F14) -> i32 {
+        let (p, q) = (b - a, c - a);
+        let shift = bits([p, q, 0]).saturating_sub(15);
+        let sum_q14 = round_shift(p, shift) * bits_of(u) + round_shift(q, shift) * bits_of(v);
+        a.wrapping_add(if shift < 14 { round_shift(sum_q14, 14 - shift) } else { sum_q14 << (shift - 14) })
+    }
+
     #[inline]
     fn negate(unit: Self::Unit) -> Self::Unit {
         unit.map(|c| -c) // a unit vector's components are in [-1, 1], and Q14 goes to -2

@@ -161,6 +161,14 @@ impl<F: Fraction> Space for Grid29With<F> {
         dot(wide(a), wide(b)) > 1 << (2 * F::U32 - 2)
     }
 
+    /// Differences are below 2^30 and weights at most 1 in Q31: each product is at most 2^61. What is wider than 32 bits, of
+    /// weights that no hit has, is cut.
+    #[inline]
+    fn blend([a, b, c]: Triple<i32>, u: FixedI32<F>, v: FixedI32<F>) -> i32 {
+        let share = |to: i32, weight: FixedI32<F>| i64::from(to - a) * i64::from(weight.to_bits());
+        (i64::from(a) + round_shift(share(b, u) + share(c, v), F::U32)) as i32
+    }
+
     #[inline]
     fn negate(unit: Self::Unit) -> Self::Unit {
         wide(unit).map(|c| saturated(-c))

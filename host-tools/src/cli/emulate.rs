@@ -248,5 +248,11 @@ fn help(board: &Board, scene: &Scene, header: &Header, sizes: &Sizes) -> String 
     if sizes.normals > 0 {
         help.push(format!("no smooth normals, which take {} bytes", sizes.normals));
     }
+    if sizes.texels > 0 {
+        help.push(format!(
+            "smaller textures, whose texels take {} bytes (`--texture-size 64`, `--texels rgb565`)",
+            sizes.texels
+        ));
+    }
     help.join("; ")
 }

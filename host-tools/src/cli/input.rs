@@ -10,6 +10,7 @@ use core_rt::blob::{BlobError, Prefix};
 use core_rt::bvh::Child;
 use core_rt::exact::Exact14;
 use core_rt::kernel::Kernel;
+use core_rt::texture::LARGEST_SIDE;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::failure::{Failure, warn};
@@ -19,7 +20,8 @@ use crate::files;
 use crate::import::{self, Imported};
 use crate::model::Model;
 use crate::picture::{SIZES, size_is_allowed};
-use crate::prepare::{Blob, Degenerates, Options, losses, missing};
+use crate::prepare::{Blob, Degenerates, Options, losses, missing, unplaced};
+use crate::textures::{self, Texels};
 use crate::tree::TreeOptions;
 
 /// A scene, and how it is prepared.
@@ -55,7 +57,33 @@ pub(super) struct SceneArguments {
     pub(super) triangles: Option<u32>,
 
     #[command(flatten)]
+    textures: TextureArguments,
+
+    #[command(flatten)]
     knobs: KnobArguments,
+}
+
+/// What textures take.
+#[derive(Clone, Copy, Debug, Args)]
+struct TextureArguments {
+    /// Average textures down to so many texels a side or fewer
+    #[arg(
+        long,
+        value_name = "N",
+        value_parser = clap::value_parser!(u32).range(1..=i64::from(LARGEST_SIDE)),
+        allow_negative_numbers = true
+    )]
+    texture_size: Option<u32>,
+
+    /// Store texels so; those of gray textures take a byte in any case [default: as the output's pixels]
+    #[arg(long, value_name = "FORMAT", value_enum)]
+    texels: Option<Texels>,
+}
+
+impl TextureArguments {
+    fn any(self) -> bool {
+        self.texture_size.is_some() || self.texels.is_some()
+    }
 }
 
 const ARITHMETIC: &str = "Arithmetic (hanika-* only)";
@@ -156,17 +184,26 @@ impl SceneArguments {
         if let Some(size) = self.size {
             model.render.size = size;
         }
-        match self.triangles {
-            Some(target) => decimate::decimate(model, target as usize)
-                .map_err(|error| Failure::input(format!("{}: {error}", self.scene.display()))),
-            None => Ok(model),
+        if let Some(side) = self.textures.texture_size {
+            textures::shrink(&mut model, side);
         }
+        let Some(target) = self.triangles else { return Ok(model) };
+        let is_painted = |model: &Model| !model.uvs.is_empty() || !model.colours.is_empty();
+        let was_painted = is_painted(&model);
+        let path = self.scene.display();
+        let model =
+            decimate::decimate(model, target as usize).map_err(|error| Failure::input(format!("{path}: {error}")))?;
+        if was_painted && !is_painted(&model) {
+            warn(format_args!("{path}: decimated, and drawn without textures and colours of vertices"));
+        }
+        Ok(model)
     }
 
     /// Reads and prepares a model for the kernel asked for.
     fn load_model(&self, default: &'static dyn Engine) -> Result<Scene, Failure> {
         let model = self.model()?;
-        missing(&model).iter().for_each(|what| warn(format_args!("{}: {what}", self.scene.display())));
+        let lines = missing(&model).into_iter().chain(unplaced(&model));
+        lines.for_each(|what| warn(format_args!("{}: {what}", self.scene.display())));
         let engine = self.engine().unwrap_or(default);
         let prepared = engine
             .prepare(&model, &self.options())
@@ -208,12 +245,13 @@ impl SceneArguments {
         }
         if self.leaf.is_some()
             || self.triangles.is_some()
+            || self.textures.any()
             || self.knobs.any()
             || self.size.is_some_and(|size| size != own)
         {
             return Err(Failure::input(format!(
-                "{path}: the blob is for {}x{} pixels, and its tree is built; --size, --leaf, --triangles and the \
-                 knobs of its arithmetic need the scene that it was made from",
+                "{path}: the blob is for {}x{} pixels, and its tree is built; --size, --leaf, --triangles, --texture-size, \
+                 --texels and the knobs of its arithmetic need the scene that it was made from",
                 own[0], own[1]
             )));
         }
@@ -229,6 +267,7 @@ impl SceneArguments {
         Options {
             tree: self.leaf.map_or(tree, |leaf_max| TreeOptions { leaf_max, leaf_always: true, ..tree }),
             knobs: self.knobs.into(),
+            texels: self.textures.texels,
         }
     }
 }

@@ -90,6 +90,7 @@ impl Inspection {
             ("  triangles", format!("{} bytes", self.bytes.triangles)),
             ("  ids", format!("{} bytes", self.bytes.ids)),
             ("  normals", format!("{} bytes", self.bytes.normals)),
+            ("  paint", format!("{} bytes, and {} of texels", self.bytes.paint, self.bytes.texels)),
             ("  shading", format!("{} bytes", self.bytes.shading)),
             ("a triangle", format!("{:.1} bytes of nodes, vertices and ids", self.bytes_per_triangle)),
         ];

@@ -4,6 +4,8 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use super::document::Document;
 use super::error::{ImportError, Warning, excerpt, list};
 use super::mtl::{self, Entry};
@@ -55,6 +57,7 @@ impl Document {
         let library = obj.map_or_else(mtl::Library::new, |obj| mtl::read(source, obj, &mesh.libraries, warnings));
         let mut textures = Textures { source, known: HashMap::new(), missing: Vec::new() };
         let mut materials = Vec::new();
+        let mut black = Vec::new();
         for named in names.all() {
             let entry = library.get(&named.name);
             let mut material = self.changed(shown(named), entry)?;
@@ -62,7 +65,15 @@ impl Document {
             if let Some(name) = entry.and_then(|entry| entry.texture.as_deref()).filter(|_| !is_coloured) {
                 material.texture = textures.get(name);
             }
+            if material.texture.is_some() && material.colour == DVec3::ZERO {
+                black.push(shown(named));
+            }
             materials.push(material);
+        }
+        if !black.is_empty() {
+            let message =
+                format!("materials with a texture that Kd, which it is multiplied by, makes black: {}", list(&black));
+            warnings.push(Warning::file(&obj.map_or_else(String::new, |obj| source.describe(obj)), message));
         }
         let undefined = |named: &&Named| {
             !named.name.is_empty()
@@ -154,7 +165,7 @@ fn shown(named: &Named) -> &str {
 mod tests {
     use std::io::Cursor;
 
-    use glam::{DVec2, DVec3};
+    use glam::DVec2;
 
     use super::*;
     use crate::import::testing::{ROOM, refused, room, scene, warnings};

@@ -9,7 +9,7 @@ use super::source::Source;
 use crate::model::Texture;
 
 /// Texels a side at most.
-const LARGEST_SIDE: u32 = 4096;
+const LARGEST_SIDE: u32 = core_rt::texture::LARGEST_SIDE as u32;
 /// Bytes that reading one may take: the largest, in the widest format of texels.
 const LARGEST_FILE: u64 = (LARGEST_SIDE as u64).pow(2) * 8 + (1 << 20);
 

@@ -9,6 +9,7 @@ use core_rt::section::ALIGN;
 use core_rt::space::Space;
 use zerocopy::IntoBytes;
 
+use super::paint::Paint;
 use super::unsupported::Plain;
 use super::{PrepareError, header};
 use crate::grid::Grid;
@@ -50,6 +51,7 @@ pub(super) struct Parts<'a, N, T> {
     pub(super) materials: &'a [Material],
     pub(super) lustres: &'a [Lustre],
     pub(super) checkers: &'a [Checker],
+    pub(super) paint: Paint,
 }
 
 /// Memory of a blob's size, filled section by section: records go straight to their place.
@@ -104,6 +106,8 @@ pub(super) fn write<K: Kernel>(
         .with(Need::SmoothNormals, !corners.is_empty())
         .with(Need::WideIds, wide_ids)
         .with(Need::WideNormals, wide_normals);
+    let needs = parts.paint.needs(needs, model.render.filter);
+    let wide_uvs = needs.has(Need::WideUvs);
     let header = Header {
         needs,
         // Pictures are at most 2^14 a side: the importer's bound.
@@ -120,6 +124,7 @@ pub(super) fn write<K: Kernel>(
             triangles: parts.triangles.len() as u32,
             smooth: corners.len() as u32 / 3,
             normals: normals.len() as u32,
+            paint: parts.paint.counts(),
             materials: parts.materials.len() as u32,
             lustres: parts.lustres.len() as u32,
             checkers: parts.checkers.len() as u32,
@@ -139,6 +144,12 @@ pub(super) fn write<K: Kernel>(
         parts.ids.len() * integer(wide_ids),
         corners.len() * integer(wide_normals),
         size_of_val(normals.as_slice()),
+        parts.paint.uv_indices.len() * integer(wide_uvs),
+        size_of_val(parts.paint.uvs.as_slice()),
+        parts.paint.colour_indices.len() * integer(wide_uvs),
+        size_of_val(parts.paint.colours.as_slice()),
+        size_of_val(parts.paint.textures.as_slice()),
+        parts.paint.texels.len(),
         size_of_val(parts.materials),
         size_of_val(parts.lustres),
         size_of_val(parts.checkers),
@@ -165,6 +176,12 @@ pub(super) fn write<K: Kernel>(
     writer.integers(parts.ids, wide_ids);
     writer.integers(&corners, wide_normals);
     writer.records(normals.into_iter());
+    writer.integers(&parts.paint.uv_indices, wide_uvs);
+    writer.records(parts.paint.uvs.into_iter());
+    writer.integers(&parts.paint.colour_indices, wide_uvs);
+    writer.records(parts.paint.colours.into_iter());
+    writer.records(parts.paint.textures.into_iter());
+    writer.records(parts.paint.texels.into_iter());
     writer.records(parts.materials.iter().copied());
     writer.records(parts.lustres.iter().copied());
     writer.records(parts.checkers.iter().copied());

@@ -4,7 +4,7 @@
 
 use thiserror::Error;
 
-use crate::model::{Material, Model, Projection};
+use crate::model::{Model, Projection};
 
 /// Something that no kernel has yet, and without which the picture would be another one.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
@@ -45,34 +45,15 @@ pub fn missing(model: &Model) -> Vec<String> {
     if model.render.samples > 1 {
         missing.push("samples: more than one a pixel is not supported yet; drawn with one".into());
     }
-    if !model.colours.is_empty() {
-        missing.push("colours of vertices are not supported yet, and are left out".into());
-    }
-    for material in &model.materials {
-        let extras = extras(material);
-        if !extras.is_empty() {
-            let name = material.name.escape_debug();
-            missing
-                .push(format!("material `{name}` is drawn without what is not supported yet: {}", extras.join(", ")));
-        }
-    }
     missing
-}
-
-/// What a material has that a Lambert surface of one colour has not.
-fn extras(material: &Material) -> Vec<&'static str> {
-    let extras = [(material.texture.is_some(), "texture")];
-    extras.into_iter().filter(|&(given, _)| given).map(|(_, name)| name).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::sync::Arc;
-
     use glam::DVec3;
 
-    use crate::model::{RenderSettings, Sphere, Texture};
+    use crate::model::{RenderSettings, Sphere};
 
     #[test]
     fn what_would_be_another_scene_is_refused() {
@@ -91,22 +72,8 @@ mod tests {
     #[test]
     fn what_is_left_out_is_said() {
         assert_eq!(missing(&Model::default()), Vec::<String>::new());
-        let textured = Material {
-            name: "a\nb".into(),
-            texture: Some(Arc::new(Texture { size: [1, 1], texels: vec![[0; 3]] })),
-            ..Material::default()
-        };
-        let model = Model {
-            materials: vec![textured, Material::default()],
-            colours: vec![DVec3::ONE],
-            render: RenderSettings { samples: 4, ..RenderSettings::default() },
-            ..Model::default()
-        };
-        let expected = [
-            "samples: more than one a pixel is not supported yet; drawn with one",
-            "colours of vertices are not supported yet, and are left out",
-            "material `a\\nb` is drawn without what is not supported yet: texture",
-        ];
+        let model = Model { render: RenderSettings { samples: 4, ..RenderSettings::default() }, ..Model::default() };
+        let expected = ["samples: more than one a pixel is not supported yet; drawn with one"];
         assert_eq!(missing(&model), expected);
     }
 }

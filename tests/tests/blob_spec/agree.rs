@@ -72,7 +72,9 @@ fn header(blob: &Blob, model: &Model) -> Checked {
         model.triangles.len() > 65_536,
         blob.normals.len() >= 65_536,
     ];
-    let needs = needs.iter().rev().fold(0, |bits, &need| bits << 1 | u32::from(need)) | looks::needs(blob, model);
+    let needs = needs.iter().rev().fold(0, |bits, &need| bits << 1 | u32::from(need))
+        | looks::needs(blob, model)
+        | crate::painted::needs(blob, model);
     rule(header.needs == needs, "needs")?;
     rule(header.size == model.render.size.map(u64::from), "size")?;
     rule(header.transfer == u64::from(linear), "transfer")?;

@@ -3,6 +3,7 @@
 
 mod agree;
 mod looks;
+mod painted;
 mod reader;
 
 use agree::agree;
@@ -11,8 +12,9 @@ use std::path::Path;
 use glam::DVec3;
 use host_tools::engine;
 use host_tools::import::{self, Embedded, load_from};
-use host_tools::model::{Light, LightKind, Lobe, Model, Projection, Transfer, Triangle};
+use host_tools::model::{Filter, Light, LightKind, Lobe, Model, Projection, Transfer, Triangle};
 use host_tools::prepare::{Options, Prepared};
+use painted::is_painted;
 use reader::{Blob, crc32, read};
 
 const KERNELS: [&str; 2] = ["exact14", "exact29"];
@@ -132,6 +134,54 @@ fn widths_change_where_the_document_says() {
             let found = prepared(&model, kernel);
             assert_eq!(agree(&found, &model), Ok(()), "{kernel} {n}");
             assert_eq!((found.header.needs >> 8 & 1, found.header.needs >> 9 & 1), (wide_ids, wide_normals), "{n}");
+        }
+    }
+}
+
+#[test]
+fn textures_and_colours_are_read_by_the_document() {
+    for kernel in KERNELS {
+        for filter in [Filter::Nearest, Filter::Bilinear] {
+            let mut model = tests::painted::model();
+            model.render.filter = filter;
+            let blob = prepared(&model, kernel);
+            assert_eq!(agree(&blob, &model), Ok(()), "{kernel}");
+            assert_eq!(is_painted(&blob, &model), Ok(()), "{kernel}");
+            let fault = |change: &dyn Fn(&mut Model)| {
+                let mut other = model.clone();
+                change(&mut other);
+                is_painted(&blob, &other).unwrap_err()
+            };
+            assert_eq!(fault(&|m| m.uvs[0] = None), "which triangles have coordinates");
+            assert_eq!(fault(&|m| m.uvs[0].as_mut().unwrap()[1].y += 1e-5), "coordinates");
+            assert_eq!(fault(&|m| m.uvs[0].as_mut().unwrap()[1].y += 1.0), "coordinates");
+            assert_eq!(fault(&|m| m.materials[1].texture = m.materials[0].texture.clone()), "texels");
+            assert_eq!(fault(&|m| m.materials[2].texture = None), "which materials have textures");
+            assert_eq!(fault(&|m| m.colours[1].x *= 0.9999), "colours");
+            let mut shifted = model.clone();
+            let corners = shifted.uvs[0].as_mut().unwrap();
+            corners.iter_mut().for_each(|uv| uv.x += 7.0);
+            assert_eq!(is_painted(&blob, &shifted), Ok(()), "whole repeats change nothing");
+        }
+        // White ones change nothing, and are left out.
+        let mut white = tests::painted::model();
+        white.colours.fill(DVec3::ONE);
+        let found = prepared(&white, kernel);
+        assert_eq!((agree(&found, &white), is_painted(&found, &white)), (Ok(()), Ok(())));
+    }
+}
+
+#[test]
+fn many_colours_or_coordinates_have_wide_indices() {
+    for kernel in KERNELS {
+        for (n, wide) in [(254, 0), (255, 1)] {
+            let mut model = carpet(n);
+            model.colours = (0..(n + 1) * (n + 1))
+                .map(|i| DVec3::new(f64::from(i % 256), f64::from(i / 256), 0.0) / 255.0)
+                .collect();
+            let found = prepared(&model, kernel);
+            assert_eq!((agree(&found, &model), is_painted(&found, &model)), (Ok(()), Ok(())), "{kernel} {n}");
+            assert_eq!(found.header.needs >> 24 & 1, wide, "{n}");
         }
     }
 }

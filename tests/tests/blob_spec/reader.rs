@@ -65,8 +65,8 @@ pub(crate) struct Header {
     pub(crate) root: u32,
     pub(crate) depth: u8,
     pub(crate) max_depth: u8,
-    /// Nodes, triangles, smooth, normals, materials, lustres, checkers, lights.
-    pub(crate) counts: [usize; 8],
+    /// Nodes, triangles, smooth, normals, texture coordinates, colours, bytes of texels, materials, lustres, checkers, lights.
+    pub(crate) counts: [usize; 11],
     pub(crate) file_triangles: u64,
     /// C, D, E, epsilon.
     pub(crate) arithmetic: [u8; 4],
@@ -102,6 +102,15 @@ pub(crate) struct Material {
     pub(crate) albedo: [u16; 3],
     pub(crate) lustre: u16,
     pub(crate) checker: u16,
+}
+
+/// The texture of a material.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Texture {
+    pub(crate) first: u64,
+    pub(crate) size: [u64; 2],
+    pub(crate) format: u64,
+    pub(crate) reserved: u64,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -148,6 +157,12 @@ pub(crate) struct Blob {
     /// `None` for a flat triangle; empty for a flat scene.
     pub(crate) corners: Vec<Option<[u32; 3]>>,
     pub(crate) normals: Vec<[i64; 3]>,
+    /// Texture coordinates, Q20. `None` for a triangle without; empty for a scene without.
+    pub(crate) uvs: Vec<Option<[[i64; 2]; 3]>>,
+    /// Of vertices; empty for a scene without.
+    pub(crate) colours: Vec<[[u16; 3]; 3]>,
+    pub(crate) textures: Vec<Texture>,
+    pub(crate) texels: Vec<u8>,
     pub(crate) materials: Vec<Material>,
     pub(crate) lustres: Vec<Lustre>,
     pub(crate) checkers: Vec<Checker>,
@@ -240,7 +255,7 @@ impl Cursor<'_> {
             max_depth: self.unsigned(1) as u8,
             root: self.varint(32) as u32,
             depth: self.unsigned(1) as u8,
-            counts: [(); 8].map(|()| self.varint(32) as usize),
+            counts: [(); 11].map(|()| self.varint(32) as usize),
             file_triangles: self.varint(32),
             arithmetic: [(); 4].map(|()| self.unsigned(1) as u8),
             origin: self.three(|c| f64::from_bits(c.varint(64))),
@@ -288,7 +303,8 @@ pub(crate) fn read(bytes: &[u8]) -> Blob {
     assert_eq!(cursor.at, 24 + header_size, "header size");
     cursor.pad();
 
-    let [node_count, triangle_count, smooth, normal_count, material_count, lustre_count, checker_count, light_count] =
+    let [node_count, triangle_count, smooth, normal_count, ..] = header.counts;
+    let [.., uv_count, colour_count, texel_count, material_count, lustre_count, checker_count, light_count] =
         header.counts;
     let wide = |bit: u32| if header.needs >> bit & 1 == 1 { 4 } else { 2 };
     let nodes = cursor.section(node_count, |c| c.node(kernel));
@@ -300,6 +316,24 @@ pub(crate) fn read(bytes: &[u8]) -> Blob {
         (indices != [flat; 3]).then_some(indices)
     });
     let normals = cursor.section(normal_count, |c| c.three(|c| c.signed(kernel.short)));
+    let (coloured, textured) = (header.needs >> 21 & 1 == 1, header.needs >> 22 & 1 == 1);
+    let corner_count = |has: bool| if has { triangle_count } else { 0 };
+    let none = if wide(24) == 4 { u32::MAX } else { u16::MAX.into() };
+    let corner_indices =
+        |c: &mut Cursor<'_>, has: bool| c.section(corner_count(has), |c| c.three(|c| c.unsigned(wide(24)) as u32));
+    let uv_indices = corner_indices(&mut cursor, textured);
+    let uvs = cursor.section(uv_count, |c| [c.signed(4), c.signed(4)]);
+    let colour_indices = corner_indices(&mut cursor, coloured);
+    let colours = cursor.section(colour_count, |c| c.three(|c| c.unsigned(2) as u16));
+    let textures = cursor.section(if textured { material_count } else { 0 }, |c| Texture {
+        first: c.unsigned(4),
+        size: [c.unsigned(2), c.unsigned(2)],
+        format: c.unsigned(2),
+        reserved: c.unsigned(2),
+    });
+    let texels = cursor.section(texel_count, |c| c.unsigned(1) as u8);
+    let uvs = uv_indices.into_iter().map(|i| (i != [none; 3]).then(|| i.map(|i| uvs[i as usize]))).collect();
+    let colours = colour_indices.into_iter().map(|i| i.map(|i| colours[i as usize])).collect();
     let materials = cursor.section(material_count, |c| Material {
         emission: c.radiance(),
         albedo: c.three(|c| c.unsigned(2) as u16),
@@ -331,5 +365,21 @@ pub(crate) fn read(bytes: &[u8]) -> Blob {
     let computed = crc32(&bytes[..cursor.at]);
     assert_eq!(cursor.unsigned(4), u64::from(computed), "checksum");
     assert_eq!(cursor.at, bytes.len(), "nothing follows");
-    Blob { kernel, header, nodes, triangles, ids, corners, normals, materials, lustres, checkers, lights }
+    Blob {
+        kernel,
+        header,
+        nodes,
+        triangles,
+        ids,
+        corners,
+        normals,
+        uvs,
+        colours,
+        textures,
+        texels,
+        materials,
+        lustres,
+        checkers,
+        lights,
+    }
 }

@@ -7,6 +7,7 @@ mod bytes;
 mod contents;
 mod extremes;
 mod headers;
+mod paint;
 mod trees;
 
 use core_rt::blob::BlobError;

@@ -2,6 +2,7 @@
 //! integers. One table holds all tolerances; an entry that is too generous fails as stale.
 
 mod optics;
+mod paint;
 
 use core_rt::colour::{Colour, Rgb16, Transfer};
 use core_rt::exact::{Exact, Ray, Reciprocal, Width, Width14, Width20, Width29};
@@ -17,7 +18,7 @@ use tests::rays::{self, Rays};
 
 /// The largest error of each operation, in the unit that its name gives. What is measured must be at most this, and at
 /// least a quarter of it.
-const TOLERANCES: [(&str, f64); 64] = [
+const TOLERANCES: [(&str, f64); 69] = [
     ("exact14 normalise, 2^-14", 3.0),
     ("exact29 normalise, 2^-30", 3.0),
     ("exact14 depth, 2^-13", 8.0),
@@ -82,6 +83,11 @@ const TOLERANCES: [(&str, f64); 64] = [
     ("f32 reflect, 2^-24", 5.0),
     ("f32 refract, 2^-24", 3.0),
     ("power, 2^-16", 40.0),
+    ("Grid14 blend, 0.5 and 2^-15 of the span", 1.0),
+    ("Grid29 blend, units", 0.5),
+    ("GridQ31 blend, units", 0.5),
+    ("exact14 texture coordinate, 2^-14 of the span", 8.0),
+    ("bilinear texture, 2^-16", 5.5),
 ];
 
 #[track_caller]
