@@ -3,9 +3,10 @@
 use crate::blob::{BlobError, Header, check, open};
 use crate::bvh::Bvh;
 use crate::camera::Camera;
-use crate::kernel::Kernel;
+use crate::kernel::{Kernel, NONE};
 use crate::profile::{Need, Profile};
 use crate::record::{Light, Lustre, Material};
+use crate::samples::MAX_SAMPLES;
 use crate::section::{Integers, Reader};
 use crate::space::Space;
 
@@ -78,6 +79,7 @@ impl<'a, P: Profile> Scene<'a, P> {
         if !header.needs.is_known()
             || usize::from(header.depth) > MAX_DEPTH
             || usize::from(header.max_depth) > MAX_BRANCHES
+            || !(1..=MAX_SAMPLES).contains(&header.samples)
         {
             return Err(BlobError::Header);
         }
@@ -98,6 +100,24 @@ impl<P: Profile> Scene<'_, P> {
     pub fn branches(&self) -> usize {
         if self.header.needs.branches() { usize::from(self.header.max_depth) + 1 } else { 0 }
     }
+
+    /// The ray of a camera, the scene's or one that looks [through](Camera::through) other places, that goes through a pixel;
+    /// `None` where the direction is zero.
+    #[inline]
+    #[must_use]
+    pub fn primary(
+        &self,
+        camera: &Camera<<P::Kernel as Kernel>::Word>,
+        x: u16,
+        y: u16,
+    ) -> Option<<P::Kernel as Kernel>::Ray> {
+        if P::NEEDS.has(Need::Orthographic) && self.header.needs.has(Need::Orthographic) {
+            let (origin, direction) = camera.parallel(x, y);
+            P::Kernel::ray(self.settings, origin, direction, NONE)
+        } else {
+            P::Kernel::primary(self.settings, camera, x, y)
+        }
+    }
 }
 
 /// The camera, where the kernel can hold it and the picture has pixels.
@@ -105,7 +125,7 @@ fn camera<K: Kernel>(header: &Header) -> Option<Camera<K::Word>> {
     if header.size.contains(&0) {
         return None;
     }
-    Camera::new(&header.camera, header.size, K::DIRECTION_BITS)
+    Camera::new::<K>(&header.camera, header.camera_use())
 }
 
 /// The sections, if they fill the body exactly and agree with each other.

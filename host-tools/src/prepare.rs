@@ -2,6 +2,7 @@
 //!
 //! Whatever the device will use is made by the device's own integer code; f64 ends at the grid.
 
+mod camera;
 mod header;
 mod layout;
 mod loss;

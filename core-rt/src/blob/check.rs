@@ -53,7 +53,7 @@ pub(crate) fn check<K: Kernel>(
     }
 }
 
-/// The eye and point lights must be where the kernel's differences hold them.
+/// Origins of camera rays and point lights must be where the kernel's differences hold them.
 fn origins<K: Kernel>(header: &Header, bvh: &Bvh<'_, K>, shading: &Shading<'_, K>) -> Result<(), BlobError> {
     let whole = match (bvh.nodes, bvh.triangles) {
         ([root, ..], _) => {
@@ -67,9 +67,10 @@ fn origins<K: Kernel>(header: &Header, bvh: &Bvh<'_, K>, shading: &Shading<'_, K
         }
         ([], []) => return Err(BlobError::Sections),
     };
-    let lights = shading.lights.iter().filter(|light| light.kind == Light::POINT).map(|light| light.place);
-    let mut all = lights.chain([header.camera.eye]);
-    if all.all(|origin| whole.spanned_from(origin, K::SPAN)) { Ok(()) } else { Err(BlobError::Origin) }
+    let mut lights = shading.lights.iter().filter(|light| light.kind == Light::POINT).map(|light| light.place);
+    let fits = lights.all(|origin| whole.spanned_from(origin, K::SPAN))
+        && header.camera.starts_within(header.camera_use(), &whole, K::SPAN);
+    if fits { Ok(()) } else { Err(BlobError::Origin) }
 }
 
 /// What light is bent by must leave room in the products.
@@ -101,6 +102,8 @@ fn used<K: Kernel>(header: &Header, shading: &Shading<'_, K>) -> Needs {
         .with(Need::Ambient, !header.ambient.is_black())
         .with(Need::Srgb, header.transfer == Transfer::Srgb)
         .with(Need::Linear, header.transfer == Transfer::Linear)
+        .with(header.format.need(), true)
+        .with(Need::Supersampling, header.samples > 1)
         .with(Need::BlinnPhong, shading.lustres.iter().any(|l| !l.specular_is_black() && l.flags & Lustre::PHONG == 0))
         .with(Need::Phong, shading.lustres.iter().any(|l| !l.specular_is_black() && l.flags & Lustre::PHONG != 0))
         .with(Need::Reflection, header.max_depth > 0 && shading.lustres.iter().any(|l| l.reflected != [0; 3]))

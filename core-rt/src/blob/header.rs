@@ -5,9 +5,10 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 use super::BlobError;
 use crate::arithmetic::Arithmetic;
-use crate::camera::CameraHeader;
+use crate::camera::{CameraHeader, Use};
 use crate::colour::{Radiance, Transfer};
-use crate::profile::Needs;
+use crate::format::Format;
+use crate::profile::{Need, Needs};
 use crate::section::{ALIGN, Reader};
 
 /// How a blob begins. The first byte is no text; the line end shows a transfer that changed line ends.
@@ -83,6 +84,10 @@ pub struct Header {
     pub ambient: Radiance,
     /// How pixels are encoded.
     pub transfer: Transfer,
+    /// How they lie in memory.
+    pub format: Format,
+    /// Camera rays a pixel, from 1 to [`MAX_SAMPLES`](crate::samples::MAX_SAMPLES).
+    pub samples: u16,
     /// How often rays go on from surfaces: the branches that a pixel's tree may have waiting.
     pub max_depth: u8,
     /// The root of the tree, packed.
@@ -97,6 +102,14 @@ pub struct Header {
     pub arithmetic: Arithmetic,
     /// Where the grid came from.
     pub source: SourceGrid,
+}
+
+impl Header {
+    /// What is done with the camera.
+    #[must_use]
+    pub fn camera_use(&self) -> Use {
+        Use { size: self.size, parallel: self.needs.has(Need::Orthographic), sampled: self.samples > 1 }
+    }
 }
 
 /// CRC-32 (ISO-HDLC: as in PNG and zlib).

@@ -16,8 +16,8 @@ use super::failure::{Failure, warn};
 use crate::decimate;
 use crate::engine::{self, ENGINES, Engine};
 use crate::files;
-use crate::import::{self, Imported};
-use crate::model::Model;
+use crate::import::{self, Imported, MOST_SAMPLES};
+use crate::model::{Format, Model};
 use crate::picture::{SIZES, size_is_allowed};
 use crate::prepare::{Blob, Degenerates, Options, losses, missing};
 use crate::tree::TreeOptions;
@@ -35,6 +35,19 @@ pub(super) struct SceneArguments {
     /// The picture's size in pixels, instead of the scene's
     #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true)]
     pub(super) size: Option<[u32; 2]>,
+
+    /// Camera rays a pixel, instead of the scene's
+    #[arg(
+        long,
+        value_name = "N",
+        value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_SAMPLES)),
+        allow_negative_numbers = true
+    )]
+    pub(super) samples: Option<u32>,
+
+    /// How pixels lie in memory, instead of the scene's way
+    #[arg(long, value_enum)]
+    pub(super) format: Option<PixelFormat>,
 
     /// Make leaves of so many triangles or fewer, without weighing their cost
     #[arg(
@@ -56,6 +69,27 @@ pub(super) struct SceneArguments {
 
     #[command(flatten)]
     knobs: KnobArguments,
+}
+
+/// A format of pixels by its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum PixelFormat {
+    /// A byte a channel
+    Rgb888,
+    /// 16 bits, dithered
+    Rgb565,
+    /// A byte of luminance
+    Gray8,
+}
+
+impl From<PixelFormat> for Format {
+    fn from(format: PixelFormat) -> Self {
+        match format {
+            PixelFormat::Rgb888 => Self::Rgb888,
+            PixelFormat::Rgb565 => Self::Rgb565,
+            PixelFormat::Gray8 => Self::Gray8,
+        }
+    }
 }
 
 const ARITHMETIC: &str = "Arithmetic (hanika-* only)";
@@ -156,6 +190,12 @@ impl SceneArguments {
         if let Some(size) = self.size {
             model.render.size = size;
         }
+        if let Some(samples) = self.samples {
+            model.render.samples = samples;
+        }
+        if let Some(format) = self.format {
+            model.render.format = format.into();
+        }
         match self.triangles {
             Some(target) => decimate::decimate(model, target as usize)
                 .map_err(|error| Failure::input(format!("{}: {error}", self.scene.display()))),
@@ -210,10 +250,12 @@ impl SceneArguments {
             || self.triangles.is_some()
             || self.knobs.any()
             || self.size.is_some_and(|size| size != own)
+            || self.samples.is_some()
+            || self.format.is_some()
         {
             return Err(Failure::input(format!(
-                "{path}: the blob is for {}x{} pixels, and its tree is built; --size, --leaf, --triangles and the \
-                 knobs of its arithmetic need the scene that it was made from",
+                "{path}: the blob is for {}x{} pixels, and its tree is built; --size, --samples, --format, --leaf, \
+                 --triangles and the knobs of its arithmetic need the scene that it was made from",
                 own[0], own[1]
             )));
         }

@@ -10,7 +10,7 @@ use core_rt::space::Space;
 use zerocopy::IntoBytes;
 
 use super::unsupported::Plain;
-use super::{PrepareError, header};
+use super::{PrepareError, camera, header};
 use crate::grid::Grid;
 use crate::model::Model;
 
@@ -107,10 +107,12 @@ pub(super) fn write<K: Kernel>(
         needs,
         // Pictures are at most 2^14 a side: the importer's bound.
         size: model.render.size.map(|s| s.min(u16::MAX.into()) as u16),
-        camera: header::camera::<K>(model, parts.plain.fov_y, grid),
+        camera: camera::camera::<K>(model, grid),
         background: header::radiance(parts.plain.background),
         ambient: header::radiance(model.render.ambient),
         transfer: header::transfer(model.render.transfer),
+        format: header::format(model.render.format),
+        samples: header::samples(model),
         max_depth: if needs.branches() { header::max_depth(model) } else { 0 },
         root: parts.root,
         depth: parts.depth,

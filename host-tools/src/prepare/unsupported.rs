@@ -5,7 +5,7 @@
 use glam::DVec3;
 use thiserror::Error;
 
-use crate::model::{Background, Falloff, Material, MaterialKind, Model, Projection};
+use crate::model::{Background, Falloff, Material, MaterialKind, Model};
 
 /// Something that no kernel has yet, and without which the picture would be another one.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
@@ -13,9 +13,6 @@ pub enum Unsupported {
     /// A sphere.
     #[error("spheres are not supported yet by any kernel; use a mesh")]
     Spheres,
-    /// Parallel camera rays.
-    #[error("orthographic projection is not supported yet by any kernel; use \"perspective\"")]
-    Orthographic,
     /// A light that fades.
     #[error("inverse-square falloff is not supported yet by any kernel; use \"none\"")]
     Falloff,
@@ -27,8 +24,6 @@ pub enum Unsupported {
 /// What kernels have one form of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Plain {
-    /// Vertical field of view, radians.
-    pub(super) fov_y: f64,
     /// What a ray that hits nothing sees.
     pub(super) background: DVec3,
 }
@@ -44,22 +39,16 @@ pub(super) fn plain(model: &Model) -> Result<Plain, Unsupported> {
     if model.lights.iter().any(|light| light.falloff != Falloff::None) {
         return Err(Unsupported::Falloff);
     }
-    let Projection::Perspective { fov_y } = model.camera.projection else {
-        return Err(Unsupported::Orthographic);
-    };
     let Background::Colour(background) = model.background else {
         return Err(Unsupported::Sky);
     };
-    Ok(Plain { fov_y, background })
+    Ok(Plain { background })
 }
 
 /// What of a model every kernel leaves out: a line of text each.
 #[must_use]
 pub fn missing(model: &Model) -> Vec<String> {
     let mut missing = Vec::new();
-    if model.render.samples > 1 {
-        missing.push("samples: more than one a pixel is not supported yet; drawn with one".into());
-    }
     if !model.colours.is_empty() {
         missing.push("colours of vertices are not supported yet, and are left out".into());
     }
@@ -88,7 +77,7 @@ fn extras(material: &Material) -> Vec<&'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Checker, Light, LightKind, RenderSettings, Specular, Sphere};
+    use crate::model::{Checker, Light, LightKind, Specular, Sphere};
 
     #[test]
     fn what_would_be_another_scene_is_refused() {
@@ -100,8 +89,6 @@ mod tests {
         assert_eq!(plain(&Model::default()).map(|plain| plain.background), Ok(DVec3::ZERO));
         let sphere = Sphere { centre: DVec3::ZERO, radius: 1.0, material: 0 };
         assert_eq!(refusal(&|m| m.spheres.push(sphere)), Unsupported::Spheres);
-        let parallel = Projection::Orthographic { height: 1.0 };
-        assert_eq!(refusal(&|m| m.camera.projection = parallel), Unsupported::Orthographic);
         let sky = Background::Sky { bottom: DVec3::ZERO, top: DVec3::ONE };
         assert_eq!(refusal(&|m| m.background = sky), Unsupported::Sky);
         let falloff = Falloff::InverseSquare { reach: 1.0 };
@@ -123,14 +110,8 @@ mod tests {
         };
         let plain = Material { weights: Some([1.0, 0.0, 0.0, 0.0]), ..Material::default() };
         let glossy = Material { name: "c".into(), specular: Some(specular), ..Material::default() };
-        let model = Model {
-            materials: vec![rich, plain, glossy],
-            colours: vec![DVec3::ONE],
-            render: RenderSettings { samples: 4, ..RenderSettings::default() },
-            ..Model::default()
-        };
+        let model = Model { materials: vec![rich, plain, glossy], colours: vec![DVec3::ONE], ..Model::default() };
         let expected = [
-            "samples: more than one a pixel is not supported yet; drawn with one",
             "colours of vertices are not supported yet, and are left out",
             "material `a\\nb` is drawn without what is not supported yet: dielectric, transparency, weights, checker",
             "material `c` is drawn without what is not supported yet: highlights",
