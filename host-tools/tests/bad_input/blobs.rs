@@ -123,9 +123,7 @@ fn for_something_else_than_was_asked() {
         "error: scene.blob: the blob is for exact14, not for exact29; leave out --kernel, or give the scene it was made \
          from\n",
     );
-    for option in
-        ["--size 7x4", "--samples 4", "--format gray8", "--leaf 2", "--triangles 1", "--edge-shift 10"]
-    {
+    for option in ["--size 7x4", "--samples 4", "--format gray8", "--leaf 2", "--triangles 1", "--edge-shift 10"] {
         folder.refuses(
             &format!("render scene.blob {option} -o out.png"),
             "error: scene.blob: the blob is for 6x4 pixels, and its tree is built; --size, --samples, --format, --leaf, \
