@@ -2,7 +2,6 @@
 
 use core_rt::blob::{BlobError, PREFIX_SIZE, Prefix};
 use core_rt::bvh::Waiting;
-use core_rt::format::Format;
 use core_rt::kernel::Kernel;
 use core_rt::profile::{Needs, Profile};
 use core_rt::render::{Tile, Workspace, render_tile};

@@ -2,7 +2,7 @@
 //!
 //! The checksums stand in `goldens/machines.txt`; `INTRAY_BLESS=1` renews them. A scene that is too large for the smallest
 //! flash is decimated, for all machines. One firmware a board and kernel serves all scenes: that of a scene which needs
-//! everything. Boards that cannot be emulated here are skipped, with a line that says so; the host's pictures are checked
+//! everything. Scenes in a format of their own, and those of [`OWN`], have firmware that has what they need and nothing else. Boards that cannot be emulated here are skipped, with a line that says so; the host's pictures are checked
 //! all the same.
 
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ use host_tools::emulate::elf::Elf;
 use host_tools::emulate::firmware::Wanted;
 use host_tools::engine;
 use host_tools::import;
-use host_tools::model::Model;
+use host_tools::model::{Model, Projection};
 use host_tools::picture::Picture;
 use host_tools::prepare::{Blob, Options};
 use rayon::prelude::*;
@@ -54,13 +54,20 @@ fn fitted(model: Model) -> Model {
     }
 }
 
+/// Scenes with firmware of their own, which has no more than they need, although another's would do.
+const OWN: [&str; 1] = ["parallel"];
+
+/// What such firmware has.
+const OWN_KERNELS: [&str; 1] = ["exact14"];
+
 /// All scenes; no model where it is absent.
 fn all() -> Vec<(&'static str, Option<Model>)> {
     let bench = import::load(&root("scenes/bench-1k/scene.toml")).expect("the performance scene").model;
     let real =
         SHARED.map(|(name, path)| (name, shared::scene(path).map(|path| import::load(&path).expect("a model").model)));
     // Another transfer is another firmware.
-    let own = scenes::all().into_iter().filter(|&(name, _)| name != "linear").map(|(name, model)| (name, Some(model)));
+    let own = scenes::all().into_iter().chain(scenes::pixels()).filter(|&(name, _)| name != "linear");
+    let own = own.map(|(name, model)| (name, Some(model)));
     let mut all: Vec<_> = own.chain([("bench-1k", Some(bench))]).chain(real).collect();
     for (_, model) in &mut all {
         *model = model.take().map(|mut model| {
@@ -76,6 +83,8 @@ fn needing_everything(all: &[(&str, Option<Model>)]) -> Model {
     let model = |wanted: &str| all.iter().find(|(name, _)| *name == wanted).and_then(|(_, model)| model.clone());
     let mut everything = model("demo").expect("it is a part of the project");
     everything.lights.extend(model("several-lights").expect("it is made").lights);
+    everything.camera.projection = Projection::Orthographic { height: 1.0 };
+    everything.render.samples = 2;
     everything
 }
 
@@ -133,13 +142,22 @@ fn pictures_are_the_same_on_three_machines() {
     let all = all();
     let everything = needing_everything(&all);
     let begin = Instant::now();
-    let firmware: Vec<(&Board, &str, Elf)> = boards()
-        .flat_map(|board| KERNELS.map(|kernel| (board, kernel)))
-        .map(|(board, kernel)| {
-            let blob = prepared(&everything, kernel);
-            let wanted = Wanted { board, blob: blob.bytes(), hits: None, count: false };
-            (board, kernel, wanted.provide().expect("it can be built"))
-        })
+    let firmware = |model: &Model, kernels: &[&'static str]| -> Vec<(&Board, &str, Elf)> {
+        boards()
+            .flat_map(|board| kernels.iter().map(move |&kernel| (board, kernel)))
+            .map(|(board, kernel)| {
+                let blob = prepared(model, kernel);
+                let wanted = Wanted { board, blob: blob.bytes(), hits: None, count: false };
+                (board, kernel, wanted.provide().expect("it can be built"))
+            })
+            .collect()
+    };
+    let shared = firmware(&everything, &KERNELS);
+    let own: Vec<_> = all
+        .iter()
+        .filter_map(|(name, model)| Some((*name, model.as_ref()?)))
+        .filter(|(name, model)| OWN.contains(name) || scenes::has_own_format(model))
+        .map(|(name, model)| (name, firmware(model, &OWN_KERNELS)))
         .collect();
     let built = begin.elapsed();
 
@@ -158,7 +176,8 @@ fn pictures_are_the_same_on_three_machines() {
     let jobs: Vec<Job<'_>> = pictures
         .iter()
         .flat_map(|(name, kernel, blob, expected)| {
-            firmware.iter().filter(move |(_, of, _)| of == kernel).map(move |(board, _, elf)| Job {
+            let own = own.iter().find(|(scene, _)| scene == name).map(|(_, firmware)| firmware);
+            own.unwrap_or(&shared).iter().filter(move |(_, of, _)| of == kernel).map(move |(board, _, elf)| Job {
                 title: format!("{name}, {kernel} on {}", board.name),
                 board,
                 elf,

@@ -111,6 +111,8 @@ fn camera(blob: &Blob, model: &Model) -> Checked {
     };
     rule(header.fraction_bits <= bits_most, "fraction bits")?;
     let bound = 1_i64 << (bits + u32::from(header.fraction_bits));
+    let is_perspective = matches!(model.camera.projection, Projection::Perspective { .. });
+    rule(!is_perspective || header.eye == place(blob, model.camera.position), "eye")?;
     // Twice the place, so that the corners of the picture are whole: they count where there are several samples.
     let (out, left) = if header.samples > 1 { (1, 2) } else { (0, 0) };
     let last = header.size.map(|side| 2 * (side as i64 - 1) + out);
@@ -152,8 +154,7 @@ fn camera(blob: &Blob, model: &Model) -> Checked {
         }
     }
     if starts.is_empty() {
-        rule(header.along == [0; 3], "a direction of all rays")?;
-        return rule(header.eye == place(blob, model.camera.position), "eye");
+        return rule(header.along == [0; 3], "a direction of all rays");
     }
     let along = DVec3::from_array(header.along.map(|c| c as f64));
     rule(along.abs().max_element() < (1_i64 << kernel.direction_bits) as f64, "range of the direction")?;
