@@ -51,42 +51,49 @@ impl Use {
 }
 
 impl CameraHeader {
-    /// Twice the coefficients' sums at the outermost places that rays go through: the middles of the pixels in the corners,
-    /// or the corners of the picture where pixels are sampled. `None` where one does not fit.
+    /// For each axis, twice the coefficients' sums at the outermost places that rays go through: the middles of the pixels
+    /// in the corners, or the corners of the picture where pixels are sampled. `None` where one does not fit.
     ///
     /// The sums are linear in the place, so that all others are between these.
-    fn ends_2x(&self, used: Use) -> [Option<Triple<i64>>; 4] {
+    fn ends_2x(&self, used: Use) -> impl Iterator<Item = [Option<i64>; 4]> {
         let out = i64::from(used.sampled);
         let [right, bottom] = used.size.map(|side| 2 * i64::from(side.saturating_sub(1)) + out);
-        [(-out, -out), (right, -out), (-out, bottom), (right, bottom)].map(|(x, y)| {
-            let sum = |axis: usize| {
-                let step = self.right[axis].checked_mul(x)?.checked_add(self.down[axis].checked_mul(y)?)?;
-                self.first[axis].checked_mul(2)?.checked_add(step)
-            };
-            Some([sum(0)?, sum(1)?, sum(2)?])
+        let axes = self.first.iter().zip(&self.right).zip(&self.down);
+        axes.map(move |((&a, &b), &c)| {
+            [(-out, -out), (right, -out), (-out, bottom), (right, bottom)].map(|place| sum_2x(a, b, c, place))
         })
     }
 
-    /// Whether every ray starts at most `span` from everything in the box, along each axis.
+    /// Whether every ray starts at most `span` from everything in the box, along each axis. The header is one that
+    /// [`Camera::new`] takes.
+    #[inline(always)]
     #[must_use]
     pub fn starts_within(&self, used: Use, bounds: &Bounds, span: i32) -> bool {
         if !used.parallel {
             return bounds.spanned_from(self.eye, span);
         }
         let half = (1i64 << self.fraction_bits) >> 1;
-        let moved = |eye: i32, sum: i64| i32::try_from(i64::from(eye) + ((sum + half) >> self.fraction_bits)).ok();
-        // Rounding keeps order, so the ends decide.
-        let is_near = |end_2x: Triple<i64>, place: fn(i64, i64) -> i64| {
-            let origin = |axis: usize| moved(self.eye[axis], place(end_2x[axis], used.error()));
-            let origin = (|| Some([origin(0)?, origin(1)?, origin(2)?]))();
-            origin.is_some_and(|origin| bounds.spanned_from(origin, span))
-        };
-        self.ends_2x(used).into_iter().all(|end| {
-            end.is_some_and(|end_2x| {
-                is_near(end_2x, |end_2x, error| (end_2x >> 1) - error) && is_near(end_2x, |end_2x, _| (end_2x + 1) >> 1)
-            })
-        })
+        let (mut low, mut high) = ([i32::MAX; 3], [i32::MIN; 3]);
+        let starts = self.eye.iter().zip(low.iter_mut().zip(&mut high));
+        for (ends_2x, (&eye, (low, high))) in self.ends_2x(used).zip(starts) {
+            for end_2x in ends_2x {
+                let Some(end_2x) = end_2x else { return false };
+                // Rounding keeps order, so the ends decide.
+                for sum in [(end_2x >> 1) - used.error(), (end_2x + 1) >> 1] {
+                    let start = i64::from(eye) + ((sum + half) >> self.fraction_bits);
+                    let Ok(start) = i32::try_from(start) else { return false };
+                    (*low, *high) = (start.min(*low), start.max(*high));
+                }
+            }
+        }
+        bounds.spanned_from(low, span) && bounds.spanned_from(high, span)
     }
+}
+
+/// `2 a + x b + y c`; `None` where it does not fit. Out of line: twelve of them are asked for, once a scene.
+#[inline(never)]
+fn sum_2x(a: i64, b: i64, c: i64, (x, y): (i64, i64)) -> Option<i64> {
+    a.checked_mul(2)?.checked_add(b.checked_mul(x)?.checked_add(c.checked_mul(y)?)?)
 }
 
 /// A camera in a kernel's words.
@@ -115,9 +122,9 @@ impl<W: Word> Camera<W> {
         let bound = 1i64.checked_shl(bits + fraction_bits).filter(|&b| b > 0)?;
         W::from_i64(bound.checked_mul(2)? - 1)?;
         let half = (1i64 << fraction_bits) >> 1;
-        for end_2x in header.ends_2x(used) {
-            for sum_2x in end_2x? {
-                if sum_2x.checked_abs()? >= 2 * (bound - half - used.error()) {
+        for ends_2x in header.ends_2x(used) {
+            for end_2x in ends_2x {
+                if end_2x?.checked_abs()? >= 2 * (bound - half - used.error()) {
                     return None;
                 }
             }

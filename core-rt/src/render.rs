@@ -162,7 +162,8 @@ pub fn render_tile<'w, P: Profile>(
         return Err(RenderError::Tile { capacity, needed: count });
     };
     let places = tile.places();
-    if P::NEEDS.has(Need::Supersampling) && scene.header.samples > 1 {
+    if P::NEEDS.has(Need::Supersampling) {
+        // One sample goes the same way: it is in the middle, and the mean of itself.
         let samples = scene.header.samples;
         // All samples of a pixel, then those of the next: as many rays at a time as there is room for hits, which are as
         // close together as those of a tile.

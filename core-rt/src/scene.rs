@@ -2,7 +2,7 @@
 
 use crate::blob::{BlobError, Header, check, open};
 use crate::bvh::Bvh;
-use crate::camera::Camera;
+use crate::camera::{Camera, Use};
 use crate::kernel::{Kernel, NONE};
 use crate::profile::{Need, Profile};
 use crate::record::{Light, Lustre, Material};
@@ -87,9 +87,11 @@ impl<'a, P: Profile> Scene<'a, P> {
             return Err(BlobError::Missing(need));
         }
         let settings = P::Kernel::settings(&header.arithmetic).ok_or(BlobError::Header)?;
-        let camera = camera::<P::Kernel>(&header).ok_or(BlobError::Header)?;
+        let camera = camera::<P::Kernel>(&header, header.camera_use(P::NEEDS)).ok_or(BlobError::Header)?;
         let (bvh, shading) = view(&header, sections).ok_or(BlobError::Sections)?;
-        check(&header, settings, &bvh, &shading)?;
+        let starts_within =
+            |whole: &_| header.camera.starts_within(header.camera_use(P::NEEDS), whole, P::Kernel::SPAN);
+        check(&header, settings, starts_within, &bvh, &shading)?;
         Ok(Self { header, settings, camera, bvh, shading })
     }
 }
@@ -121,11 +123,11 @@ impl<P: Profile> Scene<'_, P> {
 }
 
 /// The camera, where the kernel can hold it and the picture has pixels.
-fn camera<K: Kernel>(header: &Header) -> Option<Camera<K::Word>> {
+fn camera<K: Kernel>(header: &Header, used: Use) -> Option<Camera<K::Word>> {
     if header.size.contains(&0) {
         return None;
     }
-    Camera::new::<K>(&header.camera, header.camera_use())
+    Camera::new::<K>(&header.camera, used)
 }
 
 /// The sections, if they fill the body exactly and agree with each other.

@@ -217,3 +217,19 @@ fn blob(place: Region) -> &'static [u8] {
     };
     room.get(..length).unwrap_or_default()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core_rt::profile::Need;
+
+    #[test]
+    fn a_tile_takes_what_its_format_takes() {
+        let bytes = |format, draw| tile_bytes(Needs::NONE.with(format, true).with(Need::Shadows, true), draw);
+        let formats = [Need::Rgb888, Need::Rgb565, Need::Gray8];
+        assert_eq!(formats.map(|format| bytes(format, Draw::Picture)), [768, 512, 256]);
+        // Triangles' numbers are always painted in colour.
+        assert_eq!(formats.map(|format| bytes(format, Draw::Hits(Way::Tile))), [768; 3]);
+        assert_eq!(tile_bytes(Needs::ALL, Draw::Picture), 768);
+    }
+}

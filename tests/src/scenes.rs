@@ -3,7 +3,7 @@
 mod pixels;
 mod vast_ground;
 
-pub use pixels::{has_own_format, pixels};
+pub use pixels::pixels;
 pub use vast_ground::vast_ground;
 
 use glam::DVec3;

@@ -2,7 +2,7 @@
 //!
 //! The checksums stand in `goldens/machines.txt`; `INTRAY_BLESS=1` renews them. A scene that is too large for the smallest
 //! flash is decimated, for all machines. One firmware a board and kernel serves all scenes: that of a scene which needs
-//! everything. Scenes in a format of their own, and those of [`OWN`], have firmware that has what they need and nothing else. Boards that cannot be emulated here are skipped, with a line that says so; the host's pictures are checked
+//! everything. Scenes of cameras and formats have firmware of their own, which has what they need and nothing else. Boards that cannot be emulated here are skipped, with a line that says so; the host's pictures are checked
 //! all the same.
 
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ use host_tools::emulate::elf::Elf;
 use host_tools::emulate::firmware::Wanted;
 use host_tools::engine;
 use host_tools::import;
-use host_tools::model::{Model, Projection};
+use host_tools::model::Model;
 use host_tools::picture::Picture;
 use host_tools::prepare::{Blob, Options};
 use rayon::prelude::*;
@@ -54,10 +54,7 @@ fn fitted(model: Model) -> Model {
     }
 }
 
-/// Scenes with firmware of their own, which has no more than they need, although another's would do.
-const OWN: [&str; 1] = ["parallel"];
-
-/// What such firmware has.
+/// What firmware for one scene alone has.
 const OWN_KERNELS: [&str; 1] = ["exact14"];
 
 /// All scenes; no model where it is absent.
@@ -83,8 +80,6 @@ fn needing_everything(all: &[(&str, Option<Model>)]) -> Model {
     let model = |wanted: &str| all.iter().find(|(name, _)| *name == wanted).and_then(|(_, model)| model.clone());
     let mut everything = model("demo").expect("it is a part of the project");
     everything.lights.extend(model("several-lights").expect("it is made").lights);
-    everything.camera.projection = Projection::Orthographic { height: 1.0 };
-    everything.render.samples = 2;
     everything
 }
 
@@ -153,12 +148,7 @@ fn pictures_are_the_same_on_three_machines() {
             .collect()
     };
     let shared = firmware(&everything, &KERNELS);
-    let own: Vec<_> = all
-        .iter()
-        .filter_map(|(name, model)| Some((*name, model.as_ref()?)))
-        .filter(|(name, model)| OWN.contains(name) || scenes::has_own_format(model))
-        .map(|(name, model)| (name, firmware(model, &OWN_KERNELS)))
-        .collect();
+    let own: Vec<_> = scenes::pixels().iter().map(|(name, model)| (*name, firmware(model, &OWN_KERNELS))).collect();
     let built = begin.elapsed();
 
     let mut found = Vec::new();

@@ -14,15 +14,16 @@ use crate::record::{Light, Lustre, Material};
 use crate::scene::{MAX_DEPTH, Shading};
 use crate::space::{Space, is_unit_q30};
 
-/// Checks everything that the sections say.
+/// Checks everything that the sections say; camera rays by a function that knows which there are.
 pub(crate) fn check<K: Kernel>(
     header: &Header,
     settings: K::Settings,
+    starts_within: impl Fn(&Bounds) -> bool,
     bvh: &Bvh<'_, K>,
     shading: &Shading<'_, K>,
 ) -> Result<(), BlobError> {
     tree(header, bvh)?;
-    origins(header, bvh, shading)?;
+    origins(starts_within, bvh, shading)?;
     for (index, triangle) in (0..).zip(bvh.triangles) {
         let material = K::material(triangle);
         let vertices = K::vertices(triangle);
@@ -54,7 +55,11 @@ pub(crate) fn check<K: Kernel>(
 }
 
 /// Origins of camera rays and point lights must be where the kernel's differences hold them.
-fn origins<K: Kernel>(header: &Header, bvh: &Bvh<'_, K>, shading: &Shading<'_, K>) -> Result<(), BlobError> {
+fn origins<K: Kernel>(
+    starts_within: impl Fn(&Bounds) -> bool,
+    bvh: &Bvh<'_, K>,
+    shading: &Shading<'_, K>,
+) -> Result<(), BlobError> {
     let whole = match (bvh.nodes, bvh.triangles) {
         ([root, ..], _) => {
             let [a, b] = K::boxes(root);
@@ -68,8 +73,7 @@ fn origins<K: Kernel>(header: &Header, bvh: &Bvh<'_, K>, shading: &Shading<'_, K
         ([], []) => return Err(BlobError::Sections),
     };
     let mut lights = shading.lights.iter().filter(|light| light.kind == Light::POINT).map(|light| light.place);
-    let fits = lights.all(|origin| whole.spanned_from(origin, K::SPAN))
-        && header.camera.starts_within(header.camera_use(), &whole, K::SPAN);
+    let fits = lights.all(|origin| whole.spanned_from(origin, K::SPAN)) && starts_within(&whole);
     if fits { Ok(()) } else { Err(BlobError::Origin) }
 }
 

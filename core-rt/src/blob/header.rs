@@ -105,10 +105,13 @@ pub struct Header {
 }
 
 impl Header {
-    /// What is done with the camera.
+    /// What is done with the camera, under a profile that has all needs. What the profile lacks is known to be left out when
+    /// the code is compiled.
+    #[inline(always)]
     #[must_use]
-    pub fn camera_use(&self) -> Use {
-        Use { size: self.size, parallel: self.needs.has(Need::Orthographic), sampled: self.samples > 1 }
+    pub fn camera_use(&self, profile: Needs) -> Use {
+        let has = |need| profile.has(need) && self.needs.has(need);
+        Use { size: self.size, parallel: has(Need::Orthographic), sampled: has(Need::Supersampling) }
     }
 }
 

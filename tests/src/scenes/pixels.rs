@@ -23,12 +23,6 @@ pub fn pixels() -> Vec<(&'static str, Model)> {
     ]
 }
 
-/// Whether a scene is in a format of its own, so that no other's firmware takes it.
-#[must_use]
-pub fn has_own_format(model: &Model) -> bool {
-    model.render.format != Format::Rgb888
-}
-
 fn demo() -> Model {
     let mut model = import::load_from(&Embedded(builtin::FILES), "scene.toml").expect("the built-in scene").model;
     model.render.size = [160, 120];
