@@ -176,7 +176,7 @@ impl<W: Word> Camera<W> {
     #[inline]
     #[must_use]
     pub fn through(&self, place: Place) -> Self {
-        let [right, down] = place.from_middle().map(W::from_i32);
+        let [right, down] = place.off_middle().map(W::from_i32);
         let moved = |a: W, b: W, c: W| a + part(b, right) + part(c, down);
         let first = [
             moved(self.first[0], self.right[0], self.down[0]),

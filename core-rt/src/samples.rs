@@ -22,9 +22,9 @@ pub struct Place {
 }
 
 impl Place {
-    /// Right and down of the middle, Q16 in [-2^15, 2^15).
+    /// How far right and down of the middle, Q16 in [-2^15, 2^15).
     #[inline]
-    pub(crate) fn from_middle(self) -> [i32; 2] {
+    pub(crate) fn off_middle(self) -> [i32; 2] {
         [self.right_q16, self.down_q16].map(|c| i32::from(c) - MIDDLE as i32)
     }
 }
@@ -115,6 +115,6 @@ mod tests {
     #[test]
     fn one_sample_is_in_the_middle() {
         let mut places = Places::of(1);
-        assert_eq!(places.next().map(Place::from_middle), Some([0, 0]));
+        assert_eq!(places.next().map(Place::off_middle), Some([0, 0]));
     }
 }

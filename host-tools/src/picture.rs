@@ -186,7 +186,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
         let mut picture = Picture::from_fn(7, 5, |x, y| [(x * y) as u8; 3]);
-        let mut channels = |picture: &Picture| {
+        let channels = |picture: &Picture| {
             picture.write_png(&path).unwrap();
             assert_eq!(Picture::read_png(&path).unwrap(), *picture);
             image::open(&path).unwrap().color()

@@ -29,7 +29,7 @@ mod tests {
     fn every_format_has_its_colours() {
         assert_eq!(rgb888(Format::Rgb888, &[1, 2, 3, 4, 5, 6, 7]), [[1, 2, 3], [4, 5, 6]]);
         assert_eq!(rgb888(Format::Gray8, &[0, 9]), [[0; 3], [9; 3]]);
-        let pixels = [0u16, 0xffff, 1 << 11, 1 << 5, 1, 0b10000_100000_10000].map(u16::to_le_bytes);
+        let pixels = [0u16, 0xffff, 1 << 11, 1 << 5, 1, 0x8410].map(u16::to_le_bytes);
         let expected = [[0; 3], [255; 3], [8, 0, 0], [0, 4, 0], [0, 0, 8], [132, 130, 132]];
         assert_eq!(rgb888(Format::Rgb565, pixels.as_flattened()), expected);
     }

@@ -325,7 +325,7 @@ fn samples_move_steps_down_by_less_than_two_units() {
     let mut random = SplitMix64(5);
     let mut worst = 0f64;
     for _ in 0..100_000 {
-        let [first, right, down] = [[-3000, 3000], [-900, 900], [-900, 900]].map(|ends| random.within(ends));
+        let [first, right, down] = [[-2000, 2000], [-900, 900], [-900, 900]].map(|ends| random.within(ends));
         let header = CameraHeader {
             eye: [0; 3],
             along: [0; 3],

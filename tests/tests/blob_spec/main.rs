@@ -152,9 +152,15 @@ fn another_scene_is_told_from_the_blobs() {
             assert_eq!(fault(&|m| m.render.format = Format::Rgb888), "needs");
             let expected = if model.render.samples == 1 { "needs" } else { "samples" };
             assert_eq!(fault(&|m| m.render.samples += 1), expected);
-            assert_eq!(fault(&|m| m.camera.position += 0.01 * m.camera.up), "origins");
+            let raised = |m: &mut Model| {
+                m.camera.position += 0.01 * m.camera.up;
+                m.camera.look_at += 0.01 * m.camera.up;
+            };
+            assert_eq!(fault(&raised), "origins");
             assert_eq!(fault(&|m| m.camera.projection = Projection::Orthographic { height: 3.01 }), "origins");
-            assert_eq!(fault(&|m| m.camera.look_at += 0.02 * m.camera.up), "origins");
+            let tilted =
+                |m: &mut Model| m.camera.look_at += 0.02 * m.camera.position.distance(m.camera.look_at) * m.camera.up;
+            assert_eq!(fault(&tilted), "origins");
         }
 
         let (smooth, blob) = (built_in(), prepared(&built_in(), kernel));
