@@ -79,7 +79,7 @@ fn cut_and_damaged() {
             "the blob is damaged: its CRC-32 is {has:08x} and should be {should:08x}; make it anew with `intray prep`"
         ),
     );
-    folder.write("scene.blob", &signed(whole, |blob| blob[PREFIX_SIZE] |= 0x80));
+    folder.write("scene.blob", &signed(whole, |blob| blob[PREFIX_SIZE..][..5].fill(0xff)));
     refused(&folder, "the blob's header is damaged; make it anew with `intray prep`");
 }
 
