@@ -125,6 +125,13 @@ pub trait Colour: Copy + Default + core::fmt::Debug {
     fn share(part: Self::Cosine) -> u16;
     /// The pixel: clamped to 1, rounded to nearest.
     fn encode(self, transfer: Transfer) -> Rgb888;
+    /// The pixel's luminance, after ITU-R BT.709, of the clamped channels in linear light: encoded, rounded to nearest.
+    fn encode_gray(self, transfer: Transfer) -> u8;
+    /// The light that a picture shows: at most 1.
+    fn clamped(self) -> Self;
+    /// Of the sum of so many samples, each [clamped](Colour::clamped), the mean. At least one, at most
+    /// [`MAX_SAMPLES`](crate::samples::MAX_SAMPLES).
+    fn mean(self, samples: u16) -> Self;
 }
 
 /// Linear RGB in Q16.16.
@@ -197,14 +204,34 @@ impl Colour for Rgb16 {
     }
 
     fn encode(self, transfer: Transfer) -> Rgb888 {
-        self.0.map(|light| {
-            let light_q16 = light.to_bits().min(1 << 16);
-            match transfer {
-                Transfer::Srgb => srgb::encode(light_q16),
-                // 2^16 * 255 + 2^15 < 2^24.
-                Transfer::Linear => ((light_q16 * 255 + (1 << 15)) >> 16) as u8,
-            }
-        })
+        self.clamped().0.map(|light| byte(light.to_bits(), transfer))
+    }
+
+    /// Weights in Q15, which sum to 1: the sum is at most 2^31, and what was gray stays as it is.
+    fn encode_gray(self, transfer: Transfer) -> u8 {
+        let [r, g, b] = self.clamped().0.map(U16F16::to_bits);
+        byte((r * 6966 + g * 23_436 + b * 2366 + (1 << 14)) >> 15, transfer)
+    }
+
+    #[inline]
+    fn clamped(self) -> Self {
+        Self(self.0.map(|light| light.min(U16F16::ONE)))
+    }
+
+    /// Rounded to nearest, halves up. The sum is at most 2^26, in a format of 32 bits: it has not saturated.
+    #[inline]
+    fn mean(self, samples: u16) -> Self {
+        let samples = u32::from(samples.max(1));
+        Self(self.0.map(|sum| U16F16::from_bits((sum.to_bits() + samples / 2) / samples)))
+    }
+}
+
+/// Light up to 1, in Q16, as a byte.
+fn byte(light_q16: u32, transfer: Transfer) -> u8 {
+    match transfer {
+        Transfer::Srgb => srgb::encode(light_q16),
+        // 2^16 * 255 + 2^15 < 2^24.
+        Transfer::Linear => ((light_q16 * 255 + (1 << 15)) >> 16) as u8,
     }
 }
 

@@ -4,10 +4,12 @@
 //! tile size, order and number of threads gives the same picture.
 
 use crate::bvh::{Intersect, Stack};
-use crate::colour::{Colour, Rgb888};
+use crate::colour::{Colour, Transfer};
 use crate::kernel::Kernel;
 use crate::profile::{Need, Profile};
+use crate::samples::Places;
 use crate::scene::Scene;
+use crate::shade::{ColourOf, RayOf};
 use crate::stats::{RayKind, Stats};
 use crate::whitted::{Branches, radiance};
 
@@ -29,6 +31,12 @@ impl Tile {
     #[must_use]
     pub fn pixels(&self) -> usize {
         usize::from(self.width) * usize::from(self.height)
+    }
+
+    /// Column and row in the picture of each pixel, row by row.
+    pub fn places(&self) -> impl Iterator<Item = [u16; 2]> + Clone {
+        let columns = self.x..self.x.saturating_add(self.width);
+        (self.y..self.y.saturating_add(self.height)).flat_map(move |y| columns.clone().map(move |x| [x, y]))
     }
 
     /// The tiles of a picture, row by row; those at the right and at the bottom are cut to fit. None where a size is 0.
@@ -55,11 +63,11 @@ pub trait Sink {
     /// What can go wrong; [`core::convert::Infallible`] where nothing can.
     type Error;
 
-    /// Takes a tile's pixels, row by row.
+    /// Takes a tile's pixels, row by row, in the format of the scene's header.
     ///
     /// # Errors
     /// Whatever the sink cannot do; rendering stops there.
-    fn tile(&mut self, tile: Tile, pixels: &[Rgb888]) -> Result<(), Self::Error>;
+    fn tile(&mut self, tile: Tile, pixels: &[u8]) -> Result<(), Self::Error>;
 }
 
 /// The storage that rendering needs.
@@ -71,8 +79,8 @@ pub struct Workspace<'a, K: Kernel> {
     pub branches: &'a mut Branches<K>,
     /// At least one entry a pixel of the largest tile.
     pub hits: &'a mut [u32],
-    /// At least one entry a pixel of the largest tile.
-    pub pixels: &'a mut [Rgb888],
+    /// At least [`Format::bytes`](crate::format::Format::bytes) a pixel of the largest tile.
+    pub pixels: &'a mut [u8],
 }
 
 /// Why a picture was not finished.
@@ -120,7 +128,7 @@ impl<E: core::fmt::Display> core::fmt::Display for RenderError<E> {
     }
 }
 
-/// Renders one tile into the workspace and returns its pixels, row by row. The tile must lie in the picture.
+/// Renders one tile into the workspace and returns its pixels, row by row, in the format of the scene's header. The tile must lie in the picture.
 ///
 /// # Errors
 /// Where the workspace is too small.
@@ -129,7 +137,7 @@ pub fn render_tile<'w, P: Profile>(
     tile: Tile,
     workspace: &'w mut Workspace<'_, P::Kernel>,
     stats: &mut impl Stats,
-) -> Result<&'w [Rgb888], RenderError<core::convert::Infallible>> {
+) -> Result<&'w [u8], RenderError<core::convert::Infallible>> {
     let needed = usize::from(scene.header.depth);
     let (stack, branches) = (&mut *workspace.stack, &mut *workspace.branches);
     if stack.capacity() < needed {
@@ -139,34 +147,74 @@ pub fn render_tile<'w, P: Profile>(
     if branches.capacity() < needed {
         return Err(RenderError::Branches { capacity: branches.capacity(), needed });
     }
-    let count = tile.pixels();
-    let capacity = workspace.hits.len().min(workspace.pixels.len());
-    let (Some(hits), Some(pixels)) = (workspace.hits.get_mut(..count), workspace.pixels.get_mut(..count)) else {
-        return Err(RenderError::Tile { capacity, needed: count });
-    };
-    scene.bvh.closest_tile(tile_rays(scene, tile), hits, stack, stats);
-    // The profile says which transfers there are; with one, there is no choice left at run time.
+    // The profile says which transfers and formats there are; with one, there is no choice left at run time.
     let transfer = match (P::NEEDS.has(Need::Srgb), P::NEEDS.has(Need::Linear)) {
-        (true, false) => crate::colour::Transfer::Srgb,
-        (false, true) => crate::colour::Transfer::Linear,
+        (true, false) => Transfer::Srgb,
+        (false, true) => Transfer::Linear,
         _ => scene.header.transfer,
     };
-    for ((pixel, &hit), ray) in pixels.iter_mut().zip(&*hits).zip(tile_rays(scene, tile)) {
-        stats.ray(RayKind::Primary);
-        let seen = match ray {
-            Some(ray) => radiance(scene, &ray, hit, stack, branches, stats),
-            None => Colour::constant(&scene.header.background[0]),
-        };
-        *pixel = seen.encode(transfer);
+    let format = P::NEEDS.format().unwrap_or(scene.header.format);
+    let count = tile.pixels();
+    let capacity = workspace.hits.len().min(workspace.pixels.len() / format.bytes());
+    let (Some(hits), Some(pixels)) =
+        (workspace.hits.get_mut(..count), workspace.pixels.get_mut(..count * format.bytes()))
+    else {
+        return Err(RenderError::Tile { capacity, needed: count });
+    };
+    let places = tile.places();
+    if P::NEEDS.has(Need::Supersampling) {
+        // One sample goes the same way: it is in the middle, and the mean of itself.
+        let samples = scene.header.samples;
+        // All samples of a pixel, then those of the next: as many rays at a time as there is room for hits, which are as
+        // close together as those of a tile.
+        let mut rays = places
+            .clone()
+            .flat_map(|[x, y]| Places::of(samples).map(move |place| scene.primary(&scene.camera.through(place), x, y)));
+        let (mut sum, mut taken) = (ColourOf::<P>::default(), 0);
+        let mut shown = pixels.chunks_exact_mut(format.bytes()).zip(places);
+        let mut left = count * usize::from(samples);
+        while left > 0 {
+            let room = hits.len().min(left);
+            left -= room;
+            let hits = hits.get_mut(..room).unwrap_or_default();
+            let again = rays.clone();
+            scene.bvh.closest_tile(rays.by_ref().take(room), hits, stack, stats);
+            for (&hit, ray) in hits.iter().zip(again) {
+                sum = sum.plus(seen(scene, ray, hit, stack, branches, stats).clamped());
+                taken += 1;
+                if taken == samples {
+                    if let Some((pixel, place)) = shown.next() {
+                        format.put(sum.mean(samples), transfer, place, pixel);
+                    }
+                    (sum, taken) = (ColourOf::<P>::default(), 0);
+                }
+            }
+        }
+    } else {
+        let ray = |[x, y]: [u16; 2]| scene.primary(&scene.camera, x, y);
+        scene.bvh.closest_tile(places.clone().map(ray), hits, stack, stats);
+        for ((pixel, &hit), place) in pixels.chunks_exact_mut(format.bytes()).zip(&*hits).zip(places) {
+            format.put(seen(scene, ray(place), hit, stack, branches, stats), transfer, place, pixel);
+        }
     }
     Ok(pixels)
 }
 
-/// The camera rays of a tile, row by row.
-fn tile_rays<P: Profile>(scene: &Scene<'_, P>, tile: Tile) -> impl Iterator<Item = Option<<P::Kernel as Kernel>::Ray>> {
-    let rows = tile.y..tile.y.saturating_add(tile.height);
-    let columns = tile.x..tile.x.saturating_add(tile.width);
-    rows.flat_map(move |y| columns.clone().map(move |x| P::Kernel::primary(scene.settings, &scene.camera, x, y)))
+/// The light that a camera ray sees whose nearest hit is known.
+#[inline]
+fn seen<P: Profile>(
+    scene: &Scene<'_, P>,
+    ray: Option<RayOf<P>>,
+    hit: u32,
+    stack: &mut Stack<P::Kernel>,
+    branches: &mut Branches<P::Kernel>,
+    stats: &mut impl Stats,
+) -> ColourOf<P> {
+    stats.ray(RayKind::Primary);
+    match ray {
+        Some(ray) => radiance(scene, &ray, hit, stack, branches, stats),
+        None => Colour::constant(&scene.header.background[0]),
+    }
 }
 
 /// Renders a picture, tile by tile.

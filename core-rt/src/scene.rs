@@ -2,11 +2,12 @@
 
 use crate::blob::{BlobError, Header, check, open};
 use crate::bvh::Bvh;
-use crate::camera::Camera;
-use crate::kernel::Kernel;
+use crate::camera::{Camera, Use};
+use crate::kernel::{Kernel, NONE};
 use crate::paint::Paint;
 use crate::profile::{Need, Profile};
 use crate::record::{Checker, Light, Lustre, Material};
+use crate::samples::MAX_SAMPLES;
 use crate::section::{Integers, Reader};
 use crate::space::Space;
 
@@ -79,6 +80,7 @@ impl<'a, P: Profile> Scene<'a, P> {
         if !header.needs.is_known()
             || usize::from(header.depth) > MAX_DEPTH
             || usize::from(header.max_depth) > MAX_BRANCHES
+            || !(1..=MAX_SAMPLES).contains(&header.samples)
         {
             return Err(BlobError::Header);
         }
@@ -86,9 +88,11 @@ impl<'a, P: Profile> Scene<'a, P> {
             return Err(BlobError::Missing(need));
         }
         let settings = P::Kernel::settings(&header.arithmetic).ok_or(BlobError::Header)?;
-        let camera = camera::<P::Kernel>(&header).ok_or(BlobError::Header)?;
+        let camera = camera::<P::Kernel>(&header, header.camera_use(P::NEEDS)).ok_or(BlobError::Header)?;
         let (bvh, shading) = view::<P>(&header, sections).ok_or(BlobError::Sections)?;
-        check(&header, settings, &bvh, &shading)?;
+        let starts_within =
+            |whole: &_| header.camera.starts_within(header.camera_use(P::NEEDS), whole, P::Kernel::SPAN);
+        check(&header, settings, starts_within, &bvh, &shading)?;
         if P::NEEDS.paint() {
             shading.paint.check(header.counts.triangles)?;
         }
@@ -102,14 +106,32 @@ impl<P: Profile> Scene<'_, P> {
     pub fn branches(&self) -> usize {
         if self.header.needs.branches() { usize::from(self.header.max_depth) + 1 } else { 0 }
     }
+
+    /// The ray of a camera, the scene's or one that looks [through](Camera::through) other places, that goes through a pixel;
+    /// `None` where the direction is zero.
+    #[inline]
+    #[must_use]
+    pub fn primary(
+        &self,
+        camera: &Camera<<P::Kernel as Kernel>::Word>,
+        x: u16,
+        y: u16,
+    ) -> Option<<P::Kernel as Kernel>::Ray> {
+        if P::NEEDS.has(Need::Orthographic) && self.header.needs.has(Need::Orthographic) {
+            let (origin, direction) = camera.parallel(x, y);
+            P::Kernel::ray(self.settings, origin, direction, NONE)
+        } else {
+            P::Kernel::primary(self.settings, camera, x, y)
+        }
+    }
 }
 
 /// The camera, where the kernel can hold it and the picture has pixels.
-fn camera<K: Kernel>(header: &Header) -> Option<Camera<K::Word>> {
+fn camera<K: Kernel>(header: &Header, used: Use) -> Option<Camera<K::Word>> {
     if header.size.contains(&0) {
         return None;
     }
-    Camera::new(&header.camera, header.size, K::DIRECTION_BITS)
+    Camera::new::<K>(&header.camera, used)
 }
 
 /// Geometry, and everything else.

@@ -170,7 +170,7 @@ fn firmware(
          impl Firmware for This {{\n    type Profile = Self;\n    const BOARD: &'static Board = &board::{board};\n    \
          const DRAW: Draw = {draw};\n    const COUNT: bool = {count};\n}}\n\
          \n\
-         static mut STORAGE: Storage<{kernel}, {depth}, {branches}> = Storage::new();\n\
+         static mut STORAGE: Storage<{kernel}, {depth}, {branches}, {{ run::tile_bytes(Needs::from_bits({needs:#x}), {draw}) }}> = Storage::new();\n\
          {blob}"
     )
 }

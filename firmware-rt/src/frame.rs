@@ -1,7 +1,7 @@
 //! Frames: how the picture comes from the chip to the host.
 //!
 //! A frame is a [`Head`], as many bytes as it says, and the CRC-32 of both. A picture is one [`Begin`], its tiles, each a
-//! [`TileHead`] with RGB888 pixels behind it, row by row, and one [`Report`]. All numbers are little-endian.
+//! [`TileHead`] with pixels behind it, row by row, in the format that was said, and one [`Report`]. All numbers are little-endian.
 
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
@@ -37,9 +37,11 @@ pub struct Begin {
     pub width: u16,
     /// Pixels down.
     pub height: u16,
+    /// The number of the pixels' [`Format`](core_rt::format::Format).
+    pub format: u16,
 }
 
-/// A tile; three bytes a pixel follow.
+/// A tile; its pixels follow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(C)]
 pub struct TileHead {

@@ -2,11 +2,15 @@
 
 use core_rt::bvh::Intersect;
 use core_rt::colour::Rgb888;
-use core_rt::kernel::{Kernel, NONE};
+use core_rt::format::Format;
+use core_rt::kernel::NONE;
 use core_rt::profile::Profile;
 use core_rt::render::Tile;
 use core_rt::scene::Scene;
 use core_rt::stats::{RayKind, Stats};
+
+/// What hits are painted in.
+pub const HITS_FORMAT: Format = Format::Rgb888;
 
 /// How the nearest hits are looked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,11 +31,7 @@ pub fn find<P: Profile>(
     stack: &mut core_rt::bvh::Stack<P::Kernel>,
     stats: &mut impl Stats,
 ) {
-    let rows = tile.y..tile.y.saturating_add(tile.height);
-    let columns = tile.x..tile.x.saturating_add(tile.width);
-    let rays = rows.flat_map(move |y| {
-        columns.clone().map(move |x| <P::Kernel as Kernel>::primary(scene.settings, &scene.camera, x, y))
-    });
+    let rays = tile.places().map(|[x, y]| scene.primary(&scene.camera, x, y));
     match way {
         Way::Tile => scene.bvh.closest_tile(rays, hits, stack, stats),
         Way::Single => {
@@ -44,8 +44,8 @@ pub fn find<P: Profile>(
 }
 
 /// Paints hits by their triangles' numbers in the file, which do not depend on the kernel; black for none.
-pub fn paint<P: Profile>(scene: &Scene<'_, P>, hits: &[u32], pixels: &mut [Rgb888]) {
-    for (pixel, &hit) in pixels.iter_mut().zip(hits) {
+pub fn paint<P: Profile>(scene: &Scene<'_, P>, hits: &[u32], pixels: &mut [u8]) {
+    for (pixel, &hit) in pixels.as_chunks_mut().0.iter_mut().zip(hits) {
         *pixel = if hit == NONE { [0; 3] } else { colour(scene.bvh.ids.get(hit)) };
     }
 }

@@ -2,9 +2,8 @@
 
 use core_rt::blob::{BlobError, PREFIX_SIZE, Prefix};
 use core_rt::bvh::Waiting;
-use core_rt::colour::Rgb888;
 use core_rt::kernel::Kernel;
-use core_rt::profile::Profile;
+use core_rt::profile::{Needs, Profile};
 use core_rt::render::{Tile, Workspace, render_tile};
 use core_rt::scene::Scene;
 use core_rt::stats::{Counts, NoStats, Stats};
@@ -13,7 +12,7 @@ use zerocopy::{FromBytes, IntoBytes};
 
 use crate::board::{Board, Region};
 use crate::frame::{Begin, Report, TileHead};
-use crate::hits::{self, Way};
+use crate::hits::{self, HITS_FORMAT, Way};
 use crate::refusal::Refusal;
 use crate::status::Status;
 use crate::transport::{Error, Link, Wire};
@@ -22,7 +21,17 @@ use crate::{stack, window};
 /// Pixels a side of a tile.
 pub const TILE: u16 = 16;
 
-const PIXELS: usize = TILE as usize * TILE as usize;
+/// Pixels of a tile.
+pub const PIXELS: usize = TILE as usize * TILE as usize;
+
+/// The bytes that a tile's pixels take, under a profile and for what is drawn.
+#[must_use]
+pub const fn tile_bytes(needs: Needs, draw: Draw) -> usize {
+    match draw {
+        Draw::Picture => PIXELS * needs.pixel_bytes(),
+        Draw::Hits(_) => PIXELS * HITS_FORMAT.bytes(),
+    }
+}
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,37 +54,35 @@ pub trait Firmware {
     const COUNT: bool;
 }
 
-/// All that rendering stores, for trees of at most `DEPTH` levels and pixels of which `BRANCHES` rays may wait.
+/// All that rendering stores, for trees of at most `DEPTH` levels, pixels of which `BRANCHES` rays may wait, and tiles of at
+/// most `BYTES`.
 #[derive(Debug)]
-pub struct Storage<K: Kernel, const DEPTH: usize, const BRANCHES: usize> {
+pub struct Storage<K: Kernel, const DEPTH: usize, const BRANCHES: usize, const BYTES: usize> {
     stack: heapless::Vec<Waiting<K>, DEPTH>,
     branches: heapless::Vec<Branch<K>, BRANCHES>,
     hits: [u32; PIXELS],
-    pixels: [Rgb888; PIXELS],
+    pixels: [u8; BYTES],
 }
 
-impl<K: Kernel, const DEPTH: usize, const BRANCHES: usize> Storage<K, DEPTH, BRANCHES> {
+impl<K: Kernel, const DEPTH: usize, const BRANCHES: usize, const BYTES: usize> Storage<K, DEPTH, BRANCHES, BYTES> {
     /// Nothing yet.
     #[must_use]
     pub const fn new() -> Self {
-        Self {
-            stack: heapless::Vec::new(),
-            branches: heapless::Vec::new(),
-            hits: [0; PIXELS],
-            pixels: [[0; 3]; PIXELS],
-        }
+        Self { stack: heapless::Vec::new(), branches: heapless::Vec::new(), hits: [0; PIXELS], pixels: [0; BYTES] }
     }
 }
 
-impl<K: Kernel, const DEPTH: usize, const BRANCHES: usize> Default for Storage<K, DEPTH, BRANCHES> {
+impl<K: Kernel, const DEPTH: usize, const BRANCHES: usize, const BYTES: usize> Default
+    for Storage<K, DEPTH, BRANCHES, BYTES>
+{
     fn default() -> Self {
         Self::new()
     }
 }
 
 /// Renders the blob in its place; the status to end with. The stack was painted.
-pub fn run<F: Firmware, const DEPTH: usize, const BRANCHES: usize>(
-    storage: &mut Storage<<F::Profile as Profile>::Kernel, DEPTH, BRANCHES>,
+pub fn run<F: Firmware, const DEPTH: usize, const BRANCHES: usize, const BYTES: usize>(
+    storage: &mut Storage<<F::Profile as Profile>::Kernel, DEPTH, BRANCHES, BYTES>,
 ) -> Status {
     let Storage { stack, branches, hits, pixels } = storage;
     let mut workspace = Workspace { stack, branches, hits, pixels };
@@ -144,11 +151,15 @@ fn drawn<F: Firmware, S: Stats>(
     counts: fn(&S) -> Counts,
 ) -> Result<(), Error> {
     let [width, height] = scene.header.size;
-    wire.send(Begin::KIND, &[Begin { width, height }.as_bytes()])?;
+    let format = match F::DRAW {
+        Draw::Picture => scene.header.format,
+        Draw::Hits(_) => HITS_FORMAT,
+    };
+    wire.send(Begin::KIND, &[Begin { width, height, format: format.number() }.as_bytes()])?;
     for tile in Tile::of(scene.header.size, [TILE; 2]) {
         let pixels = draw::<F>(scene, tile, workspace, stats);
         let head = TileHead { x: tile.x, y: tile.y, width: tile.width, height: tile.height };
-        wire.send(TileHead::KIND, &[head.as_bytes(), pixels.as_flattened()])?;
+        wire.send(TileHead::KIND, &[head.as_bytes(), pixels])?;
     }
     let counts = counts(stats);
     // SAFETY: the stack's memory is what the board says, by the linker script that is made from it.
@@ -174,13 +185,14 @@ fn draw<'w, F: Firmware>(
     tile: Tile,
     workspace: &'w mut Workspace<'_, KernelOf<F>>,
     stats: &mut impl Stats,
-) -> &'w [Rgb888] {
+) -> &'w [u8] {
     let count = tile.pixels().min(PIXELS);
+    let mut bytes = count * HITS_FORMAT.bytes();
     window::intray_window_begin();
     match F::DRAW {
         Draw::Picture => {
             // The storage has room for the scene and for every tile: there is no error left.
-            let _ = render_tile(scene, tile, workspace, stats);
+            bytes = render_tile(scene, tile, workspace, stats).map_or(0, <[u8]>::len);
         }
         Draw::Hits(way) => {
             let hits = workspace.hits.get_mut(..count).unwrap_or_default();
@@ -191,7 +203,7 @@ fn draw<'w, F: Firmware>(
     if let Draw::Hits(_) = F::DRAW {
         hits::paint(scene, workspace.hits, workspace.pixels);
     }
-    workspace.pixels.get(..count).unwrap_or_default()
+    workspace.pixels.get(..bytes).unwrap_or_default()
 }
 
 /// The blob in its place, as long as it says, or as long as there is room.
@@ -204,4 +216,20 @@ fn blob(place: Region) -> &'static [u8] {
         Err(_) => PREFIX_SIZE,
     };
     room.get(..length).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core_rt::profile::Need;
+
+    #[test]
+    fn a_tile_takes_what_its_format_takes() {
+        let bytes = |format, draw| tile_bytes(Needs::NONE.with(format, true).with(Need::Shadows, true), draw);
+        let formats = [Need::Rgb888, Need::Rgb565, Need::Gray8];
+        assert_eq!(formats.map(|format| bytes(format, Draw::Picture)), [768, 512, 256]);
+        // Triangles' numbers are always painted in colour.
+        assert_eq!(formats.map(|format| bytes(format, Draw::Hits(Way::Tile))), [768; 3]);
+        assert_eq!(tile_bytes(Needs::ALL, Draw::Picture), 768);
+    }
 }

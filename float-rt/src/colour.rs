@@ -60,17 +60,35 @@ impl<F: Real> Colour for RgbF<F> {
     }
 
     fn encode(self, transfer: Transfer) -> Rgb888 {
-        let half = F::ONE.ldexp(-1);
-        self.0.map(|light| {
-            let light = if light < F::ONE { light } else { F::ONE };
-            let encoded = match transfer {
-                Transfer::Srgb => srgb(light),
-                Transfer::Linear => light,
-            };
-            // The conversion truncates, and takes what is negative for 0.
-            (encoded * F::from_i32(255) + half).to_u8()
-        })
+        self.clamped().0.map(|light| byte(light, transfer))
     }
+
+    fn encode_gray(self, transfer: Transfer) -> u8 {
+        let weight = |weight: i32| F::from_i32(weight) / F::from_i32(10_000);
+        let [r, g, b] = self.clamped().0;
+        byte(r * weight(2126) + g * weight(7152) + b * weight(722), transfer)
+    }
+
+    #[inline]
+    fn clamped(self) -> Self {
+        Self(self.0.map(|light| if light < F::ONE { light } else { F::ONE }))
+    }
+
+    #[inline]
+    fn mean(self, samples: u16) -> Self {
+        let samples = F::from_i32(samples.max(1).into());
+        Self(self.0.map(|sum| sum / samples))
+    }
+}
+
+/// Light up to 1 as a byte, rounded to nearest.
+fn byte<F: Real>(light: F, transfer: Transfer) -> u8 {
+    let encoded = match transfer {
+        Transfer::Srgb => srgb(light),
+        Transfer::Linear => light,
+    };
+    // The conversion truncates, and takes what is negative for 0.
+    (encoded * F::from_i32(255) + F::ONE.ldexp(-1)).to_u8()
 }
 
 /// The curve of IEC 61966-2-1 for light up to 1, by its formula: a table of thresholds would be faster by far on a chip,

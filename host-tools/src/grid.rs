@@ -9,6 +9,7 @@ use glam::DVec3;
 use thiserror::Error;
 
 use crate::model::{LightKind, Model, Triangle};
+use crate::plane::Plane;
 
 /// Why a model has no grid.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
@@ -48,14 +49,20 @@ impl Grid {
             LightKind::Point(position) => Some(position),
             LightKind::Directional(_) => None,
         });
-        let origins = Extent::of(lights.chain([model.camera.position])).ok_or(GridError::NoExtent)?;
+        let plane = Plane::of(model);
+        let cameras = match &plane {
+            None => vec![model.camera.position],
+            Some(plane) => plane.corners().into(),
+        };
+        let origins = Extent::of(lights.chain(cameras)).ok_or(GridError::NoExtent)?;
         if geometry.low == geometry.high {
             return Err(GridError::NoExtent);
         }
 
         // A unit less than the range, so that no rounding leaves it; and whole units, so that what is on a grid stays there.
         let (grid_low, grid_high) = (f64::from(K::MARGIN) + 1.0, f64::from((1 << K::GRID_BITS) - K::MARGIN) - 2.0);
-        let span = f64::from(K::SPAN) - 1.0;
+        // Origins in a plane are rounded with their coefficients, by two units more.
+        let span = f64::from(K::SPAN) - if plane.is_some() { 3.0 } else { 1.0 };
         let mut scale = f64::INFINITY;
         for axis in 0..3 {
             let (g0, g1) = (geometry.low[axis], geometry.high[axis]);

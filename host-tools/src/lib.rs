@@ -12,6 +12,8 @@ pub mod grid;
 pub mod import;
 pub mod model;
 pub mod picture;
+pub mod pixels;
+pub mod plane;
 pub mod prepare;
 pub mod reference;
 pub mod render;

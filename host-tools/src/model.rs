@@ -305,6 +305,8 @@ pub struct RenderSettings {
     pub transfer: Transfer,
     /// How textures are looked up.
     pub filter: Filter,
+    /// How pixels lie in a chip's memory.
+    pub format: Format,
 }
 
 /// 640x480 with a ray a pixel, 10 reflections, sRGB.
@@ -317,6 +319,7 @@ impl Default for RenderSettings {
             ambient: DVec3::ZERO,
             transfer: Transfer::Srgb,
             filter: Filter::default(),
+            format: Format::default(),
         }
     }
 }
@@ -328,6 +331,18 @@ pub enum Transfer {
     Srgb,
     /// 255 x, rounded to nearest.
     Linear,
+}
+
+/// How pixels lie in a chip's memory, and so what colours there are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Format {
+    /// A byte a channel.
+    #[default]
+    Rgb888,
+    /// Five, six and five bits, dithered.
+    Rgb565,
+    /// A byte of luminance.
+    Gray8,
 }
 
 /// How a texture is looked up between texels.

@@ -128,7 +128,7 @@ impl Picture {
         Ok(Self { width, height, rgb: decoded.as_raw().as_chunks().0.to_vec() })
     }
 
-    /// Writes an 8-bit RGB PNG, whole or not at all.
+    /// Writes an 8-bit PNG, gray where every pixel is and RGB otherwise, whole or not at all.
     ///
     /// # Errors
     /// [`PictureError`] where the folder does not exist or cannot be written to, or the size is not allowed.
@@ -139,9 +139,14 @@ impl Picture {
             return Err(refused);
         }
         let mut bytes = Vec::new();
-        PngEncoder::new(&mut bytes)
-            .write_image(self.rgb.as_flattened(), width, height, ExtendedColorType::Rgb8)
-            .map_err(|_| refused)?;
+        let encoder = PngEncoder::new(&mut bytes);
+        let encoded = if self.rgb.iter().all(|[r, g, b]| r == g && g == b) {
+            let gray: Vec<u8> = self.rgb.iter().map(|pixel| pixel[0]).collect();
+            encoder.write_image(&gray, width, height, ExtendedColorType::L8)
+        } else {
+            encoder.write_image(self.rgb.as_flattened(), width, height, ExtendedColorType::Rgb8)
+        };
+        encoded.map_err(|_| refused)?;
         Ok(files::write_atomically(path, &bytes)?)
     }
 }
@@ -174,6 +179,21 @@ mod tests {
         let path = folder.path().join("a.png");
         gradient().write_png(&path).unwrap();
         assert_eq!(Picture::read_png(&path).unwrap(), gradient());
+    }
+
+    #[test]
+    fn what_is_gray_is_written_in_one_channel() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        let mut picture = Picture::from_fn(7, 5, |x, y| [(x * y) as u8; 3]);
+        let channels = |picture: &Picture| {
+            picture.write_png(&path).unwrap();
+            assert_eq!(Picture::read_png(&path).unwrap(), *picture);
+            image::open(&path).unwrap().color()
+        };
+        assert_eq!(channels(&picture), ColorType::L8);
+        picture.pixels_mut()[34][1] += 1;
+        assert_eq!(channels(&picture), ColorType::Rgb8);
     }
 
     #[test]

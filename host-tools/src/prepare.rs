@@ -2,6 +2,7 @@
 //!
 //! Whatever the device will use is made by the device's own integer code; f64 ends at the grid.
 
+mod camera;
 mod header;
 mod layout;
 mod loss;
@@ -12,7 +13,7 @@ mod unsupported;
 pub use layout::Blob;
 pub use loss::{Keeper, Loss, losses};
 pub use paint::unplaced;
-pub use unsupported::{Unsupported, missing};
+pub use unsupported::Unsupported;
 
 use core_rt::arithmetic::Knobs;
 use core_rt::bvh::Child;
@@ -136,7 +137,7 @@ pub struct Prepared {
 /// # Errors
 /// Where the kernel cannot hold the scene.
 pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, PrepareError> {
-    let plain = unsupported::plain(model)?;
+    unsupported::supported(model)?;
     if model.triangles.len() >= Child::INDEX_END as usize {
         return Err(PrepareError::TooManyTriangles { found: model.triangles.len(), most: Child::INDEX_END - 1 });
     }
@@ -180,7 +181,6 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
         model,
         &grid,
         layout::Parts {
-            plain,
             root,
             depth,
             arithmetic,
@@ -190,7 +190,12 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
             materials: &used,
             lustres: &lustres,
             checkers: &checkers,
-            paint: paint::paint(model, &ids, &textured, options.texels.unwrap_or_default()),
+            paint: paint::paint(
+                model,
+                &ids,
+                &textured,
+                options.texels.unwrap_or_else(|| Texels::of(model.render.format)),
+            ),
         },
     )?;
     Ok(Prepared { blob, degenerates, grid })

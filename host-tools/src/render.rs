@@ -1,6 +1,5 @@
 //! Pictures on all cores: tiles of `core_rt::render`, each thread with a workspace of its own.
 
-use core_rt::colour::Rgb888;
 use core_rt::kernel::Kernel;
 use core_rt::profile::Profile;
 use core_rt::render::{Tile, Workspace, render_tile};
@@ -9,6 +8,7 @@ use core_rt::stats::Counts;
 use rayon::prelude::*;
 
 use crate::picture::Picture;
+use crate::pixels::rgb888;
 
 /// A picture and the work that it took.
 #[derive(Clone, Debug)]
@@ -25,7 +25,7 @@ pub type Progress<'a> = &'a (dyn Fn(u64) + Sync);
 /// Renders a scene on the threads of the current rayon pool. The picture depends on neither threads nor tiles.
 pub fn render<P: Profile>(scene: &Scene<'_, P>, tile: [u16; 2], progress: Progress<'_>) -> Rendered {
     let tiles: Vec<Tile> = Tile::of(scene.header.size, tile).collect();
-    let done: Vec<(Tile, Vec<Rgb888>, Counts)> = tiles
+    let done: Vec<(Tile, Vec<u8>, Counts)> = tiles
         .par_iter()
         .map(|&tile| {
             let (pixels, counts) = one_tile(scene, tile);
@@ -38,7 +38,7 @@ pub fn render<P: Profile>(scene: &Scene<'_, P>, tile: [u16; 2], progress: Progre
     let mut counts = Counts::default();
     for (tile, pixels, tile_counts) in done {
         counts = counts.plus(tile_counts);
-        for (row, source) in pixels.chunks_exact(tile.width.into()).enumerate() {
+        for (row, source) in rgb888(scene.header.format, &pixels).chunks_exact(tile.width.into()).enumerate() {
             let start = (usize::from(tile.y) + row) * usize::from(width) + usize::from(tile.x);
             picture.pixels_mut()[start..start + source.len()].copy_from_slice(source);
         }
@@ -47,10 +47,10 @@ pub fn render<P: Profile>(scene: &Scene<'_, P>, tile: [u16; 2], progress: Progre
 }
 
 /// One tile, with storage for it alone.
-fn one_tile<P: Profile>(scene: &Scene<'_, P>, tile: Tile) -> (Vec<Rgb888>, Counts) {
+fn one_tile<P: Profile>(scene: &Scene<'_, P>, tile: Tile) -> (Vec<u8>, Counts) {
     let mut stack = heapless::Vec::<(u32, <P::Kernel as Kernel>::Distance), MAX_DEPTH>::new();
     let mut hits = vec![0; tile.pixels()];
-    let mut pixels = vec![[0; 3]; tile.pixels()];
+    let mut pixels = vec![0; tile.pixels() * scene.header.format.bytes()];
     let mut counts = Counts::default();
     let mut branches = heapless::Vec::<_, { MAX_BRANCHES + 1 }>::new();
     let mut workspace = Workspace { stack: &mut stack, branches: &mut branches, hits: &mut hits, pixels: &mut pixels };

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use core_rt::texture;
 
-use crate::model::{Model, Texture};
+use crate::model::{Format, Model, Texture};
 
 /// How texels are stored. A texture of grays alone has a byte a texel in any of them, which loses nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
@@ -22,6 +22,16 @@ pub enum Texels {
 }
 
 impl Texels {
+    /// The format of the output's pixels: what is finer is not seen.
+    #[must_use]
+    pub const fn of(format: Format) -> Self {
+        match format {
+            Format::Rgb888 => Self::Rgb888,
+            Format::Rgb565 => Self::Rgb565,
+            Format::Gray8 => Self::Gray8,
+        }
+    }
+
     /// The number of the format in which a texture is stored, and its texels, the bottom row first.
     pub(crate) fn encode(self, texture: &Texture) -> (u16, Vec<u8>) {
         let is_gray = texture.texels.iter().all(|[red, green, blue]| red == green && green == blue);

@@ -87,7 +87,7 @@ fn draw<K: Kernel>(blob: &Blob, stats: &mut impl Stats) {
     const SIDE: u16 = 32;
     let scene = Scene::<Full<K>>::new_checked(blob.bytes()).expect("a blob just made");
     let mut stack = heapless::Vec::<_, MAX_DEPTH>::new();
-    let (mut hits, mut pixels) = ([0; 1024], [[0; 3]; 1024]);
+    let (mut hits, mut pixels) = ([0; 1024], [0; 3 * 1024]);
     let mut branches = heapless::Vec::<_, { MAX_BRANCHES + 1 }>::new();
     let mut workspace = Workspace { stack: &mut stack, branches: &mut branches, hits: &mut hits, pixels: &mut pixels };
     intray_measured(|| {

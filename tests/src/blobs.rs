@@ -11,6 +11,7 @@ use core_rt::space::Space;
 use core_rt::stats::Counts;
 use core_rt::texture::{Texture, Uv};
 use host_tools::import::{Embedded, load_from};
+use host_tools::pixels::rgb888;
 use host_tools::prepare::{Blob, Options, prepare};
 use host_tools::tree::TreeOptions;
 use zerocopy::{FromBytes, IntoBytes};
@@ -202,14 +203,14 @@ pub fn corners<K: Kernel>(scene: &Scene<'_, Full<K>>) -> Vec<Rgb888> {
     let mut seen = Vec::new();
     for tile in [first, last] {
         let mut stack = heapless::Vec::<_, MAX_DEPTH>::new();
-        let (mut hits, mut pixels) = ([0; 64], [[0; 3]; 64]);
+        let (mut hits, mut pixels) = ([0; 64], [0; 3 * 64]);
         let mut branches = heapless::Vec::<_, { MAX_BRANCHES + 1 }>::new();
         let mut workspace =
             Workspace { stack: &mut stack, branches: &mut branches, hits: &mut hits, pixels: &mut pixels };
         let mut counts = Counts::default();
-        seen.extend_from_slice(
-            render_tile(scene, tile, &mut workspace, &mut counts).expect("the workspace is the largest there is"),
-        );
+        let pixels =
+            render_tile(scene, tile, &mut workspace, &mut counts).expect("the workspace is the largest there is");
+        seen.extend(rgb888(scene.header.format, pixels));
         let (nodes, triangles) = (scene.bvh.nodes.len() as u64, scene.bvh.triangles.len() as u64);
         assert!(counts.box_tests <= 2 * nodes * counts.rays(), "{counts:?} of {nodes} nodes");
         assert!(counts.triangle_tests <= triangles * counts.rays(), "{counts:?} of {triangles} triangles");

@@ -1,7 +1,9 @@
 //! Small scenes for goldens: each asks for something that the others do not. And larger ones to measure errors on.
 
+mod pixels;
 mod vast_ground;
 
+pub use pixels::pixels;
 pub use vast_ground::vast_ground;
 
 use glam::DVec3;

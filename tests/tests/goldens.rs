@@ -32,7 +32,7 @@ fn check(found: &Picture, expected: &Picture) -> Result<(), String> {
 fn pictures_are_the_golden_ones_for_any_threads_and_tiles() {
     let bless = std::env::var_os("INTRAY_BLESS").is_some();
     let mut failures = Vec::new();
-    for (name, model) in scenes::all() {
+    for (name, model) in scenes::all().into_iter().chain(scenes::pixels()) {
         for engine in ENGINES {
             let prepared = engine.prepare(&model, &Options::default()).expect("goldens fit every kernel");
             let blob = prepared.blob.bytes();

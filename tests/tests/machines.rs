@@ -2,7 +2,7 @@
 //!
 //! The checksums stand in `goldens/machines.txt`; `INTRAY_BLESS=1` renews them. A scene that is too large for the smallest
 //! flash is decimated, for all machines. One firmware a board and kernel serves all scenes: that of a scene which needs
-//! everything. Boards that cannot be emulated here are skipped, with a line that says so; the host's pictures are checked
+//! everything. Scenes of cameras and formats have firmware of their own, which has what they need and nothing else. Boards that cannot be emulated here are skipped, with a line that says so; the host's pictures are checked
 //! all the same.
 
 use std::path::{Path, PathBuf};
@@ -56,6 +56,9 @@ fn fitted(model: Model) -> Model {
     }
 }
 
+/// What firmware for one scene alone has.
+const OWN_KERNELS: [&str; 1] = ["exact14"];
+
 /// All scenes; no model where it is absent.
 fn all() -> Vec<(&'static str, Option<Model>)> {
     let bench = import::load(&root("scenes/bench-1k/scene.toml")).expect("the performance scene").model;
@@ -63,7 +66,8 @@ fn all() -> Vec<(&'static str, Option<Model>)> {
         SHARED.map(|(name, path)| (name, shared::scene(path).map(|path| import::load(&path).expect("a model").model)));
     let textures = import::load(&root("scenes/gallery/textures/scene.toml")).expect("a scene of the gallery").model;
     // Another transfer is another firmware.
-    let own = scenes::all().into_iter().filter(|&(name, _)| name != "linear").map(|(name, model)| (name, Some(model)));
+    let own = scenes::all().into_iter().chain(scenes::pixels()).filter(|&(name, _)| name != "linear");
+    let own = own.map(|(name, model)| (name, Some(model)));
     let mut all: Vec<_> = own.chain([("bench-1k", Some(bench)), ("textures", Some(textures))]).chain(real).collect();
     for (_, model) in &mut all {
         *model = model.take().map(|mut model| {
@@ -143,14 +147,18 @@ fn pictures_are_the_same_on_three_machines() {
     let all = all();
     let everything = needing_everything(&all);
     let begin = Instant::now();
-    let firmware: Vec<(&Board, &str, Elf)> = boards()
-        .flat_map(|board| KERNELS.map(|kernel| (board, kernel)))
-        .map(|(board, kernel)| {
-            let blob = prepared(&everything, kernel);
-            let wanted = Wanted { board, blob: blob.bytes(), hits: None, count: false };
-            (board, kernel, wanted.provide().expect("it can be built"))
-        })
-        .collect();
+    let firmware = |model: &Model, kernels: &[&'static str]| -> Vec<(&Board, &str, Elf)> {
+        boards()
+            .flat_map(|board| kernels.iter().map(move |&kernel| (board, kernel)))
+            .map(|(board, kernel)| {
+                let blob = prepared(model, kernel);
+                let wanted = Wanted { board, blob: blob.bytes(), hits: None, count: false };
+                (board, kernel, wanted.provide().expect("it can be built"))
+            })
+            .collect()
+    };
+    let shared = firmware(&everything, &KERNELS);
+    let own: Vec<_> = scenes::pixels().iter().map(|(name, model)| (*name, firmware(model, &OWN_KERNELS))).collect();
     let built = begin.elapsed();
 
     let mut found = Vec::new();
@@ -168,7 +176,8 @@ fn pictures_are_the_same_on_three_machines() {
     let jobs: Vec<Job<'_>> = pictures
         .iter()
         .flat_map(|(name, kernel, blob, expected)| {
-            firmware.iter().filter(move |(_, of, _)| of == kernel).map(move |(board, _, elf)| Job {
+            let own = own.iter().find(|(scene, _)| scene == name).map(|(_, firmware)| firmware);
+            own.unwrap_or(&shared).iter().filter(move |(_, of, _)| of == kernel).map(move |(board, _, elf)| Job {
                 title: format!("{name}, {kernel} on {}", board.name),
                 board,
                 elf,

@@ -14,15 +14,16 @@ use crate::record::{Light, Lustre, Material, Reach};
 use crate::scene::{MAX_DEPTH, Shading};
 use crate::space::{Space, is_unit_q30};
 
-/// Checks everything that the sections say.
+/// Checks everything that the sections say; camera rays by a function that knows which there are.
 pub(crate) fn check<K: Kernel>(
     header: &Header,
     settings: K::Settings,
+    starts_within: impl Fn(&Bounds) -> bool,
     bvh: &Bvh<'_, K>,
     shading: &Shading<'_, K>,
 ) -> Result<(), BlobError> {
     tree(header, bvh)?;
-    origins(header, bvh, shading)?;
+    origins(starts_within, bvh, shading)?;
     for (index, triangle) in (0..).zip(bvh.triangles) {
         let material = K::material(triangle);
         let vertices = K::vertices(triangle);
@@ -56,8 +57,12 @@ pub(crate) fn check<K: Kernel>(
     }
 }
 
-/// The eye and point lights must be where the kernel's differences hold them.
-fn origins<K: Kernel>(header: &Header, bvh: &Bvh<'_, K>, shading: &Shading<'_, K>) -> Result<(), BlobError> {
+/// Origins of camera rays and point lights must be where the kernel's differences hold them.
+fn origins<K: Kernel>(
+    starts_within: impl Fn(&Bounds) -> bool,
+    bvh: &Bvh<'_, K>,
+    shading: &Shading<'_, K>,
+) -> Result<(), BlobError> {
     let whole = match (bvh.nodes, bvh.triangles) {
         ([root, ..], _) => {
             let [a, b] = K::boxes(root);
@@ -70,9 +75,9 @@ fn origins<K: Kernel>(header: &Header, bvh: &Bvh<'_, K>, shading: &Shading<'_, K
         }
         ([], []) => return Err(BlobError::Sections),
     };
-    let lights = shading.lights.iter().filter(|light| light.kind == Light::POINT).map(|light| light.place);
-    let mut all = lights.chain([header.camera.eye]);
-    if all.all(|origin| whole.spanned_from(origin, K::SPAN)) { Ok(()) } else { Err(BlobError::Origin) }
+    let mut lights = shading.lights.iter().filter(|light| light.kind == Light::POINT).map(|light| light.place);
+    let fits = lights.all(|origin| whole.spanned_from(origin, K::SPAN)) && starts_within(&whole);
+    if fits { Ok(()) } else { Err(BlobError::Origin) }
 }
 
 /// What light is bent by must leave room in the products.
@@ -108,6 +113,8 @@ fn used<K: Kernel>(header: &Header, shading: &Shading<'_, K>) -> Needs {
         .with(Need::Ambient, !header.ambient.is_black())
         .with(Need::Srgb, header.transfer == Transfer::Srgb)
         .with(Need::Linear, header.transfer == Transfer::Linear)
+        .with(header.format.need(), true)
+        .with(Need::Supersampling, header.samples > 1)
         .with(Need::BlinnPhong, shading.lustres.iter().any(|l| !l.specular_is_black() && l.flags & Lustre::PHONG == 0))
         .with(Need::Phong, shading.lustres.iter().any(|l| !l.specular_is_black() && l.flags & Lustre::PHONG != 0))
         .with(Need::Reflection, header.max_depth > 0 && shading.lustres.iter().any(|l| l.reflected != [0; 3]))

@@ -5,10 +5,11 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 use super::BlobError;
 use crate::arithmetic::Arithmetic;
-use crate::camera::CameraHeader;
+use crate::camera::{CameraHeader, Use};
 use crate::colour::{Radiance, Transfer};
+use crate::format::Format;
 use crate::paint::PaintCounts;
-use crate::profile::Needs;
+use crate::profile::{Need, Needs};
 use crate::section::{ALIGN, Reader};
 
 /// How a blob begins. The first byte is no text; the line end shows a transfer that changed line ends.
@@ -88,6 +89,10 @@ pub struct Header {
     pub ambient: Radiance,
     /// How pixels are encoded.
     pub transfer: Transfer,
+    /// How they lie in memory.
+    pub format: Format,
+    /// Camera rays a pixel, from 1 to [`MAX_SAMPLES`](crate::samples::MAX_SAMPLES).
+    pub samples: u16,
     /// How often rays go on from surfaces: the branches that a pixel's tree may have waiting.
     pub max_depth: u8,
     /// The root of the tree, packed.
@@ -102,6 +107,17 @@ pub struct Header {
     pub arithmetic: Arithmetic,
     /// Where the grid came from.
     pub source: SourceGrid,
+}
+
+impl Header {
+    /// What is done with the camera, under a profile that has all needs. What the profile lacks is known to be left out when
+    /// the code is compiled.
+    #[inline(always)]
+    #[must_use]
+    pub fn camera_use(&self, profile: Needs) -> Use {
+        let has = |need| profile.has(need) && self.needs.has(need);
+        Use { size: self.size, parallel: has(Need::Orthographic), sampled: has(Need::Supersampling) }
+    }
 }
 
 /// CRC-32 (ISO-HDLC: as in PNG and zlib).

@@ -17,10 +17,10 @@ use super::failure::{Failure, warn};
 use crate::decimate;
 use crate::engine::{self, ENGINES, Engine};
 use crate::files;
-use crate::import::{self, Imported};
-use crate::model::Model;
+use crate::import::{self, Imported, MOST_SAMPLES};
+use crate::model::{Format, Model};
 use crate::picture::{SIZES, size_is_allowed};
-use crate::prepare::{Blob, Degenerates, Options, losses, missing, unplaced};
+use crate::prepare::{Blob, Degenerates, Options, losses, unplaced};
 use crate::textures::{self, Texels};
 use crate::tree::TreeOptions;
 
@@ -37,6 +37,19 @@ pub(super) struct SceneArguments {
     /// The picture's size in pixels, instead of the scene's
     #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true)]
     pub(super) size: Option<[u32; 2]>,
+
+    /// Camera rays a pixel, instead of the scene's
+    #[arg(
+        long,
+        value_name = "N",
+        value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_SAMPLES)),
+        allow_negative_numbers = true
+    )]
+    pub(super) samples: Option<u32>,
+
+    /// How pixels lie in memory, instead of the scene's way
+    #[arg(long, value_enum)]
+    pub(super) format: Option<PixelFormat>,
 
     /// Make leaves of so many triangles or fewer, without weighing their cost
     #[arg(
@@ -83,6 +96,27 @@ struct TextureArguments {
 impl TextureArguments {
     fn any(self) -> bool {
         self.texture_size.is_some() || self.texels.is_some()
+    }
+}
+
+/// A format of pixels by its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum PixelFormat {
+    /// A byte a channel
+    Rgb888,
+    /// 16 bits, dithered
+    Rgb565,
+    /// A byte of luminance
+    Gray8,
+}
+
+impl From<PixelFormat> for Format {
+    fn from(format: PixelFormat) -> Self {
+        match format {
+            PixelFormat::Rgb888 => Self::Rgb888,
+            PixelFormat::Rgb565 => Self::Rgb565,
+            PixelFormat::Gray8 => Self::Gray8,
+        }
     }
 }
 
@@ -184,6 +218,12 @@ impl SceneArguments {
         if let Some(size) = self.size {
             model.render.size = size;
         }
+        if let Some(samples) = self.samples {
+            model.render.samples = samples;
+        }
+        if let Some(format) = self.format {
+            model.render.format = format.into();
+        }
         if let Some(side) = self.textures.texture_size {
             textures::shrink(&mut model, side);
         }
@@ -202,8 +242,9 @@ impl SceneArguments {
     /// Reads and prepares a model for the kernel asked for.
     fn load_model(&self, default: &'static dyn Engine) -> Result<Scene, Failure> {
         let model = self.model()?;
-        let lines = missing(&model).into_iter().chain(unplaced(&model));
-        lines.for_each(|what| warn(format_args!("{}: {what}", self.scene.display())));
+        if let Some(what) = unplaced(&model) {
+            warn(format_args!("{}: {what}", self.scene.display()));
+        }
         let engine = self.engine().unwrap_or(default);
         let prepared = engine
             .prepare(&model, &self.options())
@@ -248,10 +289,13 @@ impl SceneArguments {
             || self.textures.any()
             || self.knobs.any()
             || self.size.is_some_and(|size| size != own)
+            || self.samples.is_some()
+            || self.format.is_some()
         {
             return Err(Failure::input(format!(
-                "{path}: the blob is for {}x{} pixels, and its tree is built; --size, --leaf, --triangles, --texture-size, \
-                 --texels and the knobs of its arithmetic need the scene that it was made from",
+                "{path}: the blob is for {}x{} pixels, and its tree is built; --size, --samples, --format, --leaf, \
+                 --triangles, --texture-size, --texels and the knobs of its arithmetic need the scene that it was made \
+                 from",
                 own[0], own[1]
             )));
         }

@@ -1,10 +1,12 @@
 //! The picture, as it comes from the chip.
 
+use core_rt::format::Format;
 use firmware_rt::frame::{Begin, CRC_32, Head, MAGIC, MOST_BYTES, Report, TileHead};
 use zerocopy::FromBytes;
 
 use super::EmulateError;
 use crate::picture::Picture;
+use crate::pixels::rgb888;
 
 /// Puts a picture together.
 #[derive(Debug, Default)]
@@ -18,6 +20,7 @@ pub struct Frames {
 #[derive(Debug)]
 struct Canvas {
     picture: Picture,
+    format: Format,
     seen: Vec<bool>,
 }
 
@@ -55,14 +58,15 @@ impl Frames {
         const WRONG: EmulateError = EmulateError::Damaged("a frame that does not belong there");
         match (kind, &mut self.canvas, self.report) {
             (Begin::KIND, canvas @ None, None) => {
-                let Begin { width, height } = Begin::read_from_bytes(body).map_err(|_| WRONG)?;
+                let Begin { width, height, format } = Begin::read_from_bytes(body).map_err(|_| WRONG)?;
+                let format = Format::from_number(format).ok_or(WRONG)?;
                 let picture = Picture::new(width.into(), height.into());
-                *canvas = Some(Canvas { seen: vec![false; picture.pixels().len()], picture });
+                *canvas = Some(Canvas { seen: vec![false; picture.pixels().len()], format, picture });
                 Ok(0)
             }
             (TileHead::KIND, Some(canvas), None) => {
                 let (tile, pixels) = TileHead::read_from_prefix(body).map_err(|_| WRONG)?;
-                canvas.put(tile, pixels.as_chunks().0).ok_or(WRONG)
+                canvas.put(tile, pixels).ok_or(WRONG)
             }
             (Report::KIND, Some(_), report @ None) => {
                 debug_assert!(report.is_none());
@@ -76,12 +80,13 @@ impl Frames {
 
 impl Canvas {
     /// Puts a tile in its place; how many pixels it has. `None` where it does not fit, or lies on another.
-    fn put(&mut self, tile: TileHead, pixels: &[[u8; 3]]) -> Option<u64> {
+    fn put(&mut self, tile: TileHead, pixels: &[u8]) -> Option<u64> {
         let [x, y, width, height] = [tile.x, tile.y, tile.width, tile.height].map(usize::from);
         let across = self.picture.width() as usize;
-        if width == 0 || x + width > across || pixels.len() != width * height {
+        if width == 0 || x + width > across || pixels.len() != width * height * self.format.bytes() {
             return None;
         }
+        let pixels = rgb888(self.format, pixels);
         for (row, source) in pixels.chunks_exact(width).enumerate() {
             let place = (y + row) * across + x..(y + row) * across + x + width;
             self.picture.pixels_mut().get_mut(place.clone())?.copy_from_slice(source);
@@ -141,7 +146,7 @@ mod tests {
     }
 
     fn begin() -> Vec<u8> {
-        sent(Begin::KIND, &[Begin { width: 3, height: 2 }.as_bytes()])
+        sent(Begin::KIND, &[Begin { width: 3, height: 2, format: 0 }.as_bytes()])
     }
 
     fn report() -> Vec<u8> {
@@ -180,7 +185,11 @@ mod tests {
     #[test]
     fn what_does_not_belong_is_refused() {
         let tiles = [tile(0, 0, 2, 2), tile(2, 0, 1, 2)].concat();
+        let unknown = Begin { width: 3, height: 2, format: Format::ALL.len() as u16 };
+        let gray = Begin { format: Format::Gray8.number(), ..unknown };
         let wrong = [
+            vec![sent(Begin::KIND, &[unknown.as_bytes()]), tiles.clone(), report()],
+            vec![sent(Begin::KIND, &[gray.as_bytes()]), tiles.clone(), report()],
             vec![begin(), tile(0, 0, 2, 2), report()],
             vec![begin(), tiles.clone()],
             vec![tiles.clone(), report()],

@@ -158,6 +158,18 @@ pub(super) struct RenderToml {
     pub ambient: Option<Spanned<Vector>>,
     #[serde(default)]
     pub filter: FilterToml,
+    #[serde(default)]
+    pub format: FormatToml,
+}
+
+/// `render.format`.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum FormatToml {
+    #[default]
+    Rgb888,
+    Rgb565,
+    Gray8,
 }
 
 /// `render.filter`.

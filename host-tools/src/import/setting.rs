@@ -1,17 +1,18 @@
 //! Lights, background and picture settings.
 
+use core_rt::samples::MAX_SAMPLES;
 use glam::DVec3;
 use toml::Spanned;
 
 use super::document::Document;
 use super::error::ImportError;
-use super::schema::{FalloffToml, FilterToml, LightKindToml, LightToml, Number, TransferToml};
+use super::schema::{FalloffToml, FilterToml, FormatToml, LightKindToml, LightToml, Number, TransferToml};
 use super::{LARGEST, SMALLEST};
-use crate::model::{Background, Camera, Falloff, Filter, Light, LightKind, RenderSettings, Transfer};
+use crate::model::{Background, Camera, Falloff, Filter, Format, Light, LightKind, RenderSettings, Transfer};
 use crate::picture::{SIZES, size_is_allowed};
 
 /// Camera rays a pixel at most.
-const MOST_SAMPLES: u32 = 1024;
+pub const MOST_SAMPLES: u32 = MAX_SAMPLES as u32;
 /// Reflections and refractions of a ray at most.
 const GREATEST_DEPTH: u32 = 64;
 
@@ -116,7 +117,12 @@ impl Document {
             FilterToml::Bilinear => Filter::Bilinear,
             FilterToml::Nearest => Filter::Nearest,
         };
-        Ok(RenderSettings { size, samples, max_depth, ambient, transfer, filter })
+        let format = match render.format {
+            FormatToml::Rgb888 => Format::Rgb888,
+            FormatToml::Rgb565 => Format::Rgb565,
+            FormatToml::Gray8 => Format::Gray8,
+        };
+        Ok(RenderSettings { size, samples, max_depth, ambient, transfer, filter, format })
     }
 
     fn size(&self, size: &Spanned<Vec<Number>>) -> Result<[u32; 2], ImportError> {

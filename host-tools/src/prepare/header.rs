@@ -1,53 +1,16 @@
 //! What stands in the header and in the records of shading, from f64.
 
-use core_rt::camera::CameraHeader;
 use core_rt::colour::{Albedo, Radiance, Transfer};
-use core_rt::kernel::Kernel;
+use core_rt::format::Format;
 use core_rt::profile::{Need, Needs};
 use core_rt::record::{Checker, Light, Lustre, Material, Reach};
+use core_rt::samples::MAX_SAMPLES;
 use core_rt::scene::MAX_BRANCHES;
 use glam::DVec3;
 
 use super::lustre;
 use crate::grid::Grid;
-use crate::model::{self, Background, Falloff, LightKind, Model};
-
-/// Bits below a direction's unit in camera coefficients: at 2^14 pixels a side, the rounding of a step adds up to a
-/// quarter of a unit.
-const FRACTION_BITS: u8 = 16;
-
-/// The camera's coefficients for the model's picture size and a vertical field of view in radians.
-pub(super) fn camera<K: Kernel>(model: &Model, fov_y: f64, grid: &Grid) -> CameraHeader {
-    let camera = &model.camera;
-    let forward = (camera.look_at - camera.position).normalize();
-    let right = forward.cross(camera.up).normalize();
-    let up = right.cross(forward);
-    let [width, height] = model.render.size.map(f64::from);
-    // The half extents of the picture at distance 1, and a pixel's share of them.
-    let half_height = libm::tan(fov_y / 2.0);
-    let pixel = 2.0 * half_height / height;
-    let first = forward + right * (pixel * (1.0 - width) / 2.0) - up * (pixel * (1.0 - height) / 2.0);
-    // In a picture of one column (or row) no step is taken, and a wide view's would not fit.
-    let step = |direction: DVec3, pixels: f64| if pixels > 1.0 { direction * pixel } else { DVec3::ZERO };
-    let (step_right, step_down) = (step(right, width), step(-up, height));
-
-    // The largest component of any direction; it is at a corner, since directions are linear in the pixel.
-    let (last_x, last_y) = (width - 1.0, height - 1.0);
-    let largest = [(0.0, 0.0), (last_x, 0.0), (0.0, last_y), (last_x, last_y)]
-        .map(|(x, y)| (first + step_right * x + step_down * y).abs().max_element())
-        .into_iter()
-        .fold(0.0, f64::max);
-    // Two units are left for the rounding of coefficients and of directions.
-    let unit = ((1i64 << K::DIRECTION_BITS) - 2) as f64 / largest * f64::from(1u32 << FRACTION_BITS);
-    let coefficients = |v: DVec3| (v * unit).to_array().map(|c| (c + 0.5).floor() as i64);
-    CameraHeader {
-        eye: grid.place(camera.position),
-        first: coefficients(first),
-        right: coefficients(step_right),
-        down: coefficients(step_down),
-        fraction_bits: FRACTION_BITS,
-    }
-}
+use crate::model::{self, Background, Falloff, LightKind, Model, Projection};
 
 /// Light as the blob has it; the strongest channel decides the exponent, and weaker ones round to nearest.
 pub(super) fn radiance(linear: DVec3) -> Radiance {
@@ -143,6 +106,9 @@ pub(super) fn needs(model: &Model, materials: &[Material], lustres: &[Lustre]) -
         .with(Need::Ambient, !radiance(model.render.ambient).is_black())
         .with(Need::Srgb, model.render.transfer == model::Transfer::Srgb)
         .with(Need::Linear, model.render.transfer == model::Transfer::Linear)
+        .with(format(model.render.format).need(), true)
+        .with(Need::Supersampling, samples(model) > 1)
+        .with(Need::Orthographic, matches!(model.camera.projection, Projection::Orthographic { .. }))
         .with(Need::BlinnPhong, shines(false))
         .with(Need::Phong, shines(true))
         .with(Need::Reflection, goes_on(|l| l.reflected))
@@ -157,6 +123,20 @@ pub(super) fn needs(model: &Model, materials: &[Material], lustres: &[Lustre]) -
 /// From how many surfaces a ray may go on.
 pub(super) fn max_depth(model: &Model) -> u8 {
     model.render.max_depth.min(MAX_BRANCHES as u32) as u8
+}
+
+/// Camera rays a pixel.
+pub(super) fn samples(model: &Model) -> u16 {
+    model.render.samples.clamp(1, MAX_SAMPLES.into()) as u16
+}
+
+/// How pixels lie in memory.
+pub(super) const fn format(format: model::Format) -> Format {
+    match format {
+        model::Format::Rgb888 => Format::Rgb888,
+        model::Format::Rgb565 => Format::Rgb565,
+        model::Format::Gray8 => Format::Gray8,
+    }
 }
 
 /// How pixels are encoded.

@@ -10,8 +10,7 @@ use core_rt::space::Space;
 use zerocopy::IntoBytes;
 
 use super::paint::Paint;
-use super::unsupported::Plain;
-use super::{PrepareError, header};
+use super::{PrepareError, camera, header};
 use crate::grid::Grid;
 use crate::model::Model;
 
@@ -40,7 +39,6 @@ impl Blob {
 
 /// What the tree's builder and the kernel made, in the order of the blob.
 pub(super) struct Parts<'a, N, T> {
-    pub(super) plain: Plain,
     pub(super) root: u32,
     pub(super) depth: u8,
     pub(super) arithmetic: Arithmetic,
@@ -112,10 +110,12 @@ pub(super) fn write<K: Kernel>(
         needs,
         // Pictures are at most 2^14 a side: the importer's bound.
         size: model.render.size.map(|s| s.min(u16::MAX.into()) as u16),
-        camera: header::camera::<K>(model, parts.plain.fov_y, grid),
+        camera: camera::camera::<K>(model, grid),
         background: header::background(model),
         ambient: header::radiance(model.render.ambient),
         transfer: header::transfer(model.render.transfer),
+        format: header::format(model.render.format),
+        samples: header::samples(model),
         max_depth: if needs.branches() { header::max_depth(model) } else { 0 },
         root: parts.root,
         depth: parts.depth,

@@ -79,7 +79,7 @@ fn cut_and_damaged() {
             "the blob is damaged: its CRC-32 is {has:08x} and should be {should:08x}; make it anew with `intray prep`"
         ),
     );
-    folder.write("scene.blob", &signed(whole, |blob| blob[PREFIX_SIZE] |= 0x80));
+    folder.write("scene.blob", &signed(whole, |blob| blob[PREFIX_SIZE..][..5].fill(0xff)));
     refused(&folder, "the blob's header is damaged; make it anew with `intray prep`");
 }
 
@@ -123,11 +123,21 @@ fn for_something_else_than_was_asked() {
         "error: scene.blob: the blob is for exact14, not for exact29; leave out --kernel, or give the scene it was made \
          from\n",
     );
-    for option in ["--size 7x4", "--leaf 2", "--triangles 1", "--edge-shift 10", "--texture-size 8", "--texels gray8"] {
+    let options = [
+        "--size 7x4",
+        "--samples 4",
+        "--format gray8",
+        "--leaf 2",
+        "--triangles 1",
+        "--edge-shift 10",
+        "--texture-size 8",
+        "--texels gray8",
+    ];
+    for option in options {
         folder.refuses(
             &format!("render scene.blob {option} -o out.png"),
-            "error: scene.blob: the blob is for 6x4 pixels, and its tree is built; --size, --leaf, --triangles, \
-             --texture-size, --texels and the knobs of its arithmetic need the scene that it was made from\n",
+            "error: scene.blob: the blob is for 6x4 pixels, and its tree is built; --size, --samples, --format, --leaf, \
+             --triangles, --texture-size, --texels and the knobs of its arithmetic need the scene that it was made from\n",
         );
     }
 }

@@ -92,6 +92,19 @@ fn pictures_that_cannot_be() {
     }
 }
 
+#[test]
+fn samples_and_formats_that_cannot_be() {
+    for (lines, message) in [
+        ("samples = 0", "3: samples of 0; it must be a whole number from 1 to 1024"),
+        ("samples = 1025", "3: samples of 1025; it must be a whole number from 1 to 1024"),
+        ("samples = 4.5", "3: samples of 4.5; it must be a whole number from 1 to 1024"),
+        ("format = 'rgb666'", "3: unknown value `rgb666`; the nearest known one is `rgb565`"),
+        ("format = 16", "3: wanted string or table"),
+    ] {
+        refused(&format!("[render]\n{lines}"), message);
+    }
+}
+
 /// A camera or a light so far away that the geometry is a point on the grid.
 #[test]
 fn distances_beyond_the_grid() {
@@ -113,6 +126,10 @@ fn extremes_that_are_good() {
         "[camera]\nposition = [3, 3, 0]\nlook_at = [0, 0, 0]\nfov_y = 1e-310",
         "[camera]\nposition = [3, 3, 0]\nlook_at = [0, 0, 0]\nup = [0, 1e-30, 0]",
         "[camera]\nposition = [0.5, 0.5, 0.5]\nlook_at = [0.5000000001, 0.5, 0.5]",
+        "[camera]\nposition = [3, 3, 0]\nlook_at = [0, 0, 0]\nprojection = 'orthographic'\nheight = 1e-30",
+        "[camera]\nposition = [3e15, 3e15, 0]\nlook_at = [0, 0, 0]\nprojection = 'orthographic'\nheight = 2\n[[light]]\nposition = [0, 0, 2]",
+        "[camera]\nposition = [0.3, 0.3, 0]\nlook_at = [0, 0, 0]\nprojection = 'orthographic'\nheight = 2",
+        "[camera]\nposition = [3, 3, 0]\nlook_at = [0, 0, 0]\nfov_y = 179.99999999999\n[render]\nsamples = 1024",
         "[[light]]\nposition = [0, 0, 1e8]\nintensity = 1e30\ncolour = [1e30, 1, 1e-30]",
         "[[light]]\nkind = 'directional'\ndirection = [0, 1e-30, 0]",
         "[[light]]\nposition = [0.5, 0.5, 0.5]\nintensity = 0",
@@ -151,9 +168,6 @@ fn materials_that_cannot_be() {
 fn what_kernels_do_not_have() {
     for (lines, message) in [
         ("[[sphere]]\ncentre = [0, 0, 0]\nradius = 1", "spheres are not supported yet by any kernel; use a mesh"),
-        ("[camera]\nprojection = 'orthographic'\nheight = 3", {
-            "orthographic projection is not supported yet by any kernel; use \"perspective\""
-        }),
         ("[[light]]\nposition = [0, 0, 3]\nfalloff = 'inverse-square'\nreach = 1", {
             "inverse-square falloff is not supported yet by any kernel; use \"none\""
         }),
@@ -169,7 +183,6 @@ fn what_kernels_do_not_have() {
 #[test]
 fn what_kernels_draw_more_plainly() {
     for (lines, what) in [
-        ("[render]\nsamples = 4", "samples: more than one a pixel is not supported yet; drawn with one"),
         ("[material.default]\nkind = 'mirror'", "material `default` is drawn as Lambert; not supported yet: mirror"),
         ("[material.default]\nkind = 'dielectric'\nweights = [0, 0.5, 0.1, 0.8]", {
             "material `default` is drawn as Lambert; not supported yet: dielectric, transparency, weights"

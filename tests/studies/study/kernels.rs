@@ -166,7 +166,7 @@ fn drawer<K: Kernel>(blob: &Blob) -> Drawer<'_> {
     let scene = view::<K>(blob);
     Box::new(move || {
         let mut stack = heapless::Vec::<Waiting<K>, MAX_DEPTH>::new();
-        let (mut hits, mut pixels) = ([0; 256], [[0; 3]; 256]);
+        let (mut hits, mut pixels) = ([0; 256], [0; 3 * 256]);
         let mut branches = heapless::Vec::<_, { MAX_BRANCHES + 1 }>::new();
         let mut workspace =
             Workspace { stack: &mut stack, branches: &mut branches, hits: &mut hits, pixels: &mut pixels };

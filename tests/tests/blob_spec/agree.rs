@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use glam::DVec3;
-use host_tools::model::{Background, LightKind, Model, Projection, Transfer};
+use host_tools::model::{Background, Format, LightKind, Model, Projection, Transfer};
 
 use crate::looks;
 use crate::reader::{Blob, Bounds, Radiance};
@@ -75,7 +75,16 @@ fn header(blob: &Blob, model: &Model) -> Checked {
     let needs = needs.iter().rev().fold(0, |bits, &need| bits << 1 | u32::from(need))
         | looks::needs(blob, model)
         | crate::painted::needs(blob, model);
-    rule(header.needs == needs, "needs")?;
+    let format = match model.render.format {
+        Format::Rgb888 => 0,
+        Format::Rgb565 => 1,
+        Format::Gray8 => 2,
+    };
+    let parallel = matches!(model.camera.projection, Projection::Orthographic { .. });
+    let pixels = u32::from(parallel) << 19 | u32::from(model.render.samples > 1) << 20 | 1 << (25 + format);
+    rule(header.needs == needs | pixels, "needs")?;
+    rule(header.format == format, "format")?;
+    rule(header.samples == u64::from(model.render.samples), "samples")?;
     rule(header.size == model.render.size.map(u64::from), "size")?;
     rule(header.transfer == u64::from(linear), "transfer")?;
     rule(header.file_triangles == model.triangles.len() as u64, "triangles in the file")?;
@@ -90,34 +99,77 @@ fn header(blob: &Blob, model: &Model) -> Checked {
     rule(is_light(&header.ambient, model.render.ambient), "ambient")
 }
 
-fn camera(blob: &Blob, model: &Model) -> Checked {
-    let (header, camera) = (&blob.header, &model.camera);
-    rule(header.eye == place(blob, camera.position), "eye")?;
-    rule(header.fraction_bits <= blob.kernel.fraction_bits_most, "fraction bits")?;
+/// The camera's frame: forward, right, up.
+fn frame(model: &Model) -> [DVec3; 3] {
+    let camera = &model.camera;
     let forward = (camera.look_at - camera.position).normalize();
     let right = forward.cross(camera.up).normalize();
-    let up = right.cross(forward);
+    [forward, right, right.cross(forward)]
+}
+
+fn camera(blob: &Blob, model: &Model) -> Checked {
+    let (header, kernel) = (&blob.header, &blob.kernel);
+    let [forward, right, up] = frame(model);
     let [width, height] = header.size.map(|side| side as f64);
     let half = (1_i64 << header.fraction_bits) >> 1;
-    let bound = 1_i64 << (blob.kernel.direction_bits + u32::from(header.fraction_bits));
-    for (x, y) in [(0, 0), (header.size[0] - 1, 0), (0, header.size[1] - 1), (header.size[0] - 1, header.size[1] - 1)] {
-        let mut direction = [0; 3];
-        for (axis, component) in direction.iter_mut().enumerate() {
-            let sum = header.first[axis] + x as i64 * header.right[axis] + y as i64 * header.down[axis];
-            rule(sum.abs() + half < bound, "range of directions")?;
-            *component = (sum + half) >> header.fraction_bits;
+    let (bits, bits_most) = match model.camera.projection {
+        Projection::Perspective { .. } => (kernel.direction_bits, kernel.fraction_bits_most),
+        Projection::Orthographic { .. } => (kernel.offset_bits, kernel.fraction_bits_parallel),
+    };
+    rule(header.fraction_bits <= bits_most, "fraction bits")?;
+    let bound = 1_i64 << (bits + u32::from(header.fraction_bits));
+    let is_perspective = matches!(model.camera.projection, Projection::Perspective { .. });
+    rule(!is_perspective || header.eye == place(blob, model.camera.position), "eye")?;
+    // Twice the place, so that the corners of the picture are whole: they count where there are several samples.
+    let (out, left) = if header.samples > 1 { (1, 2) } else { (0, 0) };
+    let last = header.size.map(|side| 2 * (side as i64 - 1) + out);
+    let mut starts = Vec::new();
+    for (x, y) in [(-out, -out), (last[0], -out), (-out, last[1]), (last[0], last[1])] {
+        let mut step = [0.0; 3];
+        for (axis, component) in step.iter_mut().enumerate() {
+            let sum = 2 * header.first[axis] + x * header.right[axis] + y * header.down[axis];
+            rule(sum.abs() + 2 * (half + left) < 2 * bound, "range of directions")?;
+            *component = if out == 0 {
+                ((sum / 2 + half) >> header.fraction_bits) as f64
+            } else {
+                sum as f64 / (2_i64 << header.fraction_bits) as f64
+            };
         }
-        // Pixel centres on a picture at distance 1.
-        let Projection::Perspective { fov_y } = camera.projection else { return Err("projection".into()) };
-        let extent = (fov_y / 2.0).tan();
-        let meant = forward
-            + right * (extent / height * (2.0 * x as f64 + 1.0 - width))
-            + up * (extent / height * (height - 2.0 * y as f64 - 1.0));
-        let off = DVec3::from_array(direction.map(|c| c as f64)).normalize().distance(meant.normalize());
-        // A unit on each axis, of a direction of at least 2^(bits - 1).
-        rule(off < 4.0 / (1_i64 << blob.kernel.direction_bits) as f64, "directions")?;
+        let step = DVec3::from_array(step);
+        // In pixels from the picture's middle.
+        let place = [(x as f64 + 1.0 - width) / 2.0, (height - 1.0 - y as f64) / 2.0];
+        match model.camera.projection {
+            Projection::Perspective { fov_y } => {
+                // On a picture at distance 1.
+                let pixel = 2.0 * (fov_y / 2.0).tan() / height;
+                let meant = forward + (right * place[0] + up * place[1]) * pixel;
+                // A unit on each axis, of a direction of at least 2^(bits - 1).
+                let off = step.normalize().distance(meant.normalize());
+                rule(off < 4.0 / (1_i64 << kernel.direction_bits) as f64, "directions")?;
+            }
+            Projection::Orthographic { height: extent } => {
+                let meant = model.camera.position + (right * place[0] + up * place[1]) * (extent / height);
+                let eye = DVec3::from_array(header.eye.map(|c| c as f64));
+                let start = DVec3::from_array(header.origin) + (eye + step) / header.scale;
+                let moved = (start - meant).dot(forward);
+                // Half a unit on each axis, and what the coefficients are rounded by.
+                let off = (start - meant - forward * moved).length() * header.scale;
+                rule(off < 1.0, "origins")?;
+                rule(moved * header.scale > -1.0, "a plane that is moved back")?;
+                starts.push((start, moved));
+            }
+        }
     }
-    Ok(())
+    if starts.is_empty() {
+        return rule(header.along == [0; 3], "a direction of all rays");
+    }
+    let along = DVec3::from_array(header.along.map(|c| c as f64));
+    rule(along.abs().max_element() < (1_i64 << kernel.direction_bits) as f64, "range of the direction")?;
+    rule(along.normalize().distance(forward) < 4.0 / (1_i64 << kernel.direction_bits) as f64, "direction")?;
+    let farthest = starts.iter().map(|&(start, _)| start.dot(forward)).fold(f64::NEG_INFINITY, f64::max);
+    let is_moved = starts.iter().any(|(_, moved)| moved * header.scale > 1.0);
+    let mut vertices = model.triangles.iter().flat_map(|t| t.vertices).map(|v| model.positions[v as usize]);
+    rule(!is_moved || vertices.all(|v| v.dot(forward) > farthest), "a plane that is moved beyond what is seen")
 }
 
 fn tree(blob: &Blob) -> Checked {
@@ -154,8 +206,22 @@ fn subtree(blob: &Blob, word: u32, holder: Bounds, next: &mut (usize, usize)) ->
 
 /// The root's boxes are tight, so what is within the span of the vertices is within that of the boxes.
 fn origins(blob: &Blob) -> Checked {
-    let lights = blob.lights.iter().filter(|light| light.kind == 0).map(|light| light.place);
-    for origin in lights.chain([blob.header.eye]) {
+    let header = &blob.header;
+    let mut all: Vec<_> = blob.lights.iter().filter(|light| light.kind == 0).map(|light| light.place).collect();
+    if header.along == [0; 3] {
+        all.push(header.eye);
+    } else {
+        // Of the picture's corners, and half a pixel beyond them if need be.
+        let f = header.fraction_bits;
+        let (out, half, low) = if header.samples > 1 { (1, 1 << f >> 1, 2) } else { (0, 1 << f >> 1, 0) };
+        let last = header.size.map(|side| 2 * (side as i64 - 1) + out);
+        for (x, y) in [(-out, -out), (last[0], -out), (-out, last[1]), (last[0], last[1])] {
+            let sum = |axis: usize| 2 * header.first[axis] + x * header.right[axis] + y * header.down[axis];
+            all.push([0, 1, 2].map(|axis| header.eye[axis] + ((((sum(axis) + 1) >> 1) + half) >> f)));
+            all.push([0, 1, 2].map(|axis| header.eye[axis] + (((sum(axis) >> 1) - low + half) >> f)));
+        }
+    }
+    for origin in all {
         let mut differences = blob.triangles.iter().flat_map(|t| t.vertices).flat_map(|vertex| minus(vertex, origin));
         rule(differences.all(|difference| difference.abs() <= blob.kernel.span), "span")?;
     }

@@ -12,7 +12,7 @@ use std::path::Path;
 use glam::DVec3;
 use host_tools::engine;
 use host_tools::import::{self, Embedded, load_from};
-use host_tools::model::{Filter, Light, LightKind, Lobe, Model, Projection, Transfer, Triangle};
+use host_tools::model::{Filter, Format, Light, LightKind, Lobe, Model, Projection, Transfer, Triangle};
 use host_tools::prepare::{Options, Prepared};
 use painted::is_painted;
 use reader::{Blob, crc32, read};
@@ -44,6 +44,25 @@ fn gallery(name: &str) -> Model {
     model
 }
 
+/// The same by parallel rays that start in the midst of it, several a pixel, in 16 bits.
+fn parallel() -> Model {
+    let mut model = built_in();
+    let middle = model.positions.iter().sum::<DVec3>() / model.positions.len() as f64;
+    model.camera.position = middle;
+    model.camera.look_at = middle + DVec3::new(-1.0, -0.7, -0.4);
+    model.camera.projection = Projection::Orthographic { height: 3.0 };
+    (model.render.samples, model.render.format, model.render.size) = (5, Format::Rgb565, [31, 23]);
+    model
+}
+
+/// The same from far off, a sample a pixel, in gray.
+fn distant() -> Model {
+    let mut model = parallel();
+    model.camera.position -= 1e5 * (model.camera.look_at - model.camera.position);
+    (model.render.samples, model.render.format) = (1, Format::Gray8);
+    model
+}
+
 /// A square of 2 n^2 triangles over (n + 1)^2 positions, as many normals, and one triangle without area.
 fn carpet(n: u32) -> Model {
     let mut model = built_in();
@@ -71,7 +90,7 @@ fn prepared(model: &Model, kernel: &str) -> Blob {
 #[test]
 fn what_goes_in_is_read_by_the_document() {
     for kernel in KERNELS {
-        for model in [built_in(), flat()] {
+        for model in [built_in(), flat(), parallel(), distant()] {
             let Prepared { blob, grid, degenerates } = prepare(&model, kernel);
             let found = read(blob.bytes());
             assert_eq!(agree(&found, &model), Ok(()), "{kernel}");
@@ -81,7 +100,7 @@ fn what_goes_in_is_read_by_the_document() {
         let (mixed, flat) = (prepared(&built_in(), kernel), prepared(&flat(), kernel));
         // What the comparisons rely on: both kinds of triangles, trees of some depth, widths that are narrow.
         assert!(mixed.corners.contains(&None) && mixed.corners.iter().any(Option::is_some));
-        assert!(mixed.header.depth > 5 && mixed.header.needs >> 8 == 0);
+        assert!(mixed.header.depth > 5 && mixed.header.needs >> 8 == 1 << (25 - 8));
         assert!(flat.corners.is_empty() && flat.normals.is_empty());
     }
 }
@@ -223,6 +242,27 @@ fn another_scene_is_told_from_the_blobs() {
         assert_eq!(fault(&|m| m.lights[1].kind = LightKind::Directional(DVec3::X)), "direction of a light");
         assert_eq!(fault(&|m| m.lights.swap(0, 1)), "strength of a light");
 
+        for model in [parallel(), distant()] {
+            let blob = prepared(&model, kernel);
+            let fault = |change: &dyn Fn(&mut Model)| {
+                let mut other = model.clone();
+                change(&mut other);
+                agree(&blob, &other).unwrap_err()
+            };
+            assert_eq!(fault(&|m| m.render.format = Format::Rgb888), "needs");
+            let expected = if model.render.samples == 1 { "needs" } else { "samples" };
+            assert_eq!(fault(&|m| m.render.samples += 1), expected);
+            let raised = |m: &mut Model| {
+                m.camera.position += 0.01 * m.camera.up;
+                m.camera.look_at += 0.01 * m.camera.up;
+            };
+            assert_eq!(fault(&raised), "origins");
+            assert_eq!(fault(&|m| m.camera.projection = Projection::Orthographic { height: 3.01 }), "origins");
+            let tilted =
+                |m: &mut Model| m.camera.look_at += 0.02 * m.camera.position.distance(m.camera.look_at) * m.camera.up;
+            assert_eq!(fault(&tilted), "origins");
+        }
+
         let (smooth, blob) = (built_in(), prepared(&built_in(), kernel));
         let mut other = smooth.clone();
         other.normals.iter_mut().for_each(|normal| *normal = DVec3::new(normal.y, normal.x, normal.z));
@@ -246,6 +286,9 @@ fn a_blob_that_breaks_a_rule_is_told_from_one_that_does_not() {
         });
         assert_eq!(fault(&|b| b.header.depth += 1), "depth");
         assert_eq!(fault(&|b| b.lights[0].place[1] += b.kernel.span), "span");
+        assert_eq!(fault(&|b| b.header.along[2] = 1), "a direction of all rays");
+        assert_eq!(fault(&|b| b.header.format = 1), "format");
+        assert_eq!(fault(&|b| b.header.samples = 2), "samples");
         assert_eq!(fault(&|b| b.triangles[5].shift += 1), "shift");
         assert_eq!(fault(&|b| b.triangles[5].n[0] += 1), "n");
         assert_eq!(fault(&|b| b.ids[1] = b.ids[0]), "vertices");

@@ -135,7 +135,15 @@ impl<K: Kernel> Profile for Smaller<K> {
 fn undeclared_needs<K: Kernel>() {
     let blob = sample::<K>(false);
     let good = Draft::<K>::read(blob.bytes()).expect("a good blob");
-    for need in [Need::PointLight, Need::DirectionalLight, Need::Shadows, Need::Emission, Need::Ambient, Need::Srgb] {
+    for need in [
+        Need::PointLight,
+        Need::DirectionalLight,
+        Need::Shadows,
+        Need::Emission,
+        Need::Ambient,
+        Need::Srgb,
+        Need::Rgb888,
+    ] {
         let mut draft = good.clone();
         draft.header.needs = without(&draft, need);
         assert_eq!(verdict::<K>(draft.write().bytes()), Err(BlobError::Undeclared(need)));

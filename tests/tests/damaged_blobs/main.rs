@@ -4,6 +4,7 @@
 //! its ranges, the test fails.
 
 mod bytes;
+mod cameras;
 mod contents;
 mod extremes;
 mod headers;

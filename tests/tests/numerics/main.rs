@@ -4,10 +4,12 @@
 mod optics;
 mod paint;
 
+use core_rt::camera::{Camera, CameraHeader, Use};
 use core_rt::colour::{Colour, Rgb16, Transfer};
 use core_rt::exact::{Exact, Ray, Reciprocal, Width, Width14, Width20, Width29};
 use core_rt::kernel::{Bounds, Kernel, NONE};
 use core_rt::num::{Word, cross, sub};
+use core_rt::samples::Place;
 use core_rt::space::{Grid14, Grid29, Space};
 use ethnum::U256;
 use fixed::types::U16F16;
@@ -18,7 +20,8 @@ use tests::rays::{self, Rays};
 
 /// The largest error of each operation, in the unit that its name gives. What is measured must be at most this, and at
 /// least a quarter of it.
-const TOLERANCES: [(&str, f64); 69] = [
+const TOLERANCES: [(&str, f64); 70] = [
+    ("sample's step, units of a coefficient", 2.0),
     ("exact14 normalise, 2^-14", 3.0),
     ("exact29 normalise, 2^-30", 3.0),
     ("exact14 depth, 2^-13", 8.0),
@@ -375,6 +378,35 @@ fn fractions_are_ordered_as_256_bits_order_them() {
         let expected = (wide(a) * wide(pair.1)).cmp(&(wide(pair.0) * wide(b)));
         assert_eq!(Width29::order((a, b), pair), expected, "{a} / {b}, {pair:?}");
     }
+}
+
+/// Where a sample's direction is from where it should be: low, by two products that are rounded down.
+#[test]
+fn samples_move_steps_down_by_less_than_two_units() {
+    let mut random = SplitMix64(5);
+    let mut worst = 0f64;
+    for _ in 0..100_000 {
+        let [first, right, down] = [[-2000, 2000], [-900, 900], [-900, 900]].map(|ends| random.within(ends));
+        let header = CameraHeader {
+            eye: [0; 3],
+            along: [0; 3],
+            first: [first; 3],
+            right: [right; 3],
+            down: [down; 3],
+            fraction_bits: 0,
+        };
+        let used = Use { size: [4, 3], parallel: false, sampled: true };
+        let camera = Camera::<i32>::new::<Exact<Width14>>(&header, used).expect("in range");
+        let mut place = || random.within([0, 65_535]) as u16;
+        let place = Place { right_q16: place(), down_q16: place() };
+        let (x, y) = (random.below(4), random.below(3));
+        let along = |pixel: u64, place: u16| pixel as f64 + f64::from(place) / 65_536.0 - 0.5;
+        let exact = first as f64 + right as f64 * along(x, place.right_q16) + down as f64 * along(y, place.down_q16);
+        let [found, ..] = camera.through(place).direction(x as u16, y as u16);
+        assert!(f64::from(found) <= exact, "{header:?} {place:?}: {found} is over {exact}");
+        worst = worst.max(exact - f64::from(found));
+    }
+    within_tolerance("sample's step, units of a coefficient", worst);
 }
 
 /// IEC 61966-2-1, every value of Q16.

@@ -5,7 +5,6 @@ use core::convert::Infallible;
 use core::hint::black_box;
 
 use core_rt::bvh::Waiting;
-use core_rt::colour::Rgb888;
 use core_rt::render::{Sink, Tile, Workspace, render};
 use core_rt::scene::Scene;
 use core_rt::stats::NoStats;
@@ -19,7 +18,7 @@ struct Somewhere;
 impl Sink for Somewhere {
     type Error = Infallible;
 
-    fn tile(&mut self, tile: Tile, pixels: &[Rgb888]) -> Result<(), Infallible> {
+    fn tile(&mut self, tile: Tile, pixels: &[u8]) -> Result<(), Infallible> {
         black_box((tile, pixels));
         Ok(())
     }
@@ -29,7 +28,7 @@ fn draw() {
     let mut stack = heapless::Vec::<Waiting<Kernel>, DEPTH>::new();
     let mut branches = heapless::Vec::<Branch<Kernel>, BRANCHES>::new();
     // Of any length, for all that the compiler knows.
-    let (hits, pixels) = (black_box::<&mut [u32]>(&mut []), black_box::<&mut [Rgb888]>(&mut []));
+    let (hits, pixels) = (black_box::<&mut [u32]>(&mut []), black_box::<&mut [u8]>(&mut []));
     let mut workspace = Workspace { stack: &mut stack, branches: &mut branches, hits, pixels };
     match Scene::<This>::new_checked(black_box(&[])) {
         Ok(scene) => {
