@@ -19,7 +19,7 @@ mod program {
         let storage = &raw mut STORAGE;
         // SAFETY: this function is entered once, and nothing else names the storage.
         let storage = unsafe { &mut *storage };
-        end(run::run::<This, _>(storage), || ())
+        end(run::run::<This, _, _>(storage), || ())
     }
 }
 
