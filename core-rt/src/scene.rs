@@ -62,7 +62,7 @@ pub struct Scene<'a, P: Profile> {
     /// The view.
     pub camera: Camera<<P::Kernel as Kernel>::Word>,
     /// Geometry.
-    pub bvh: Bvh<'a, P::Kernel>,
+    pub bvh: Bvh<'a, P>,
     /// Everything else.
     pub shading: Shading<'a, P::Kernel>,
 }
@@ -86,7 +86,7 @@ impl<'a, P: Profile> Scene<'a, P> {
         }
         let settings = P::Kernel::settings(&header.arithmetic).ok_or(BlobError::Header)?;
         let camera = camera::<P::Kernel>(&header).ok_or(BlobError::Header)?;
-        let (bvh, shading) = view(&header, sections).ok_or(BlobError::Sections)?;
+        let (bvh, shading) = view::<P>(&header, sections).ok_or(BlobError::Sections)?;
         check(&header, settings, &bvh, &shading)?;
         Ok(Self { header, settings, camera, bvh, shading })
     }
@@ -109,10 +109,12 @@ fn camera<K: Kernel>(header: &Header) -> Option<Camera<K::Word>> {
 }
 
 /// The sections, if they fill the body exactly and agree with each other.
-fn view<'a, K: Kernel>(header: &Header, sections: &'a [u8]) -> Option<(Bvh<'a, K>, Shading<'a, K>)> {
+fn view<'a, P: Profile>(header: &Header, sections: &'a [u8]) -> Option<(Bvh<'a, P>, Shading<'a, P::Kernel>)> {
     let counts = &header.counts;
     let smooth = header.needs.has(Need::SmoothNormals);
-    let consistent = counts.triangles > 0
+    let primitives = counts.triangles.checked_add(counts.spheres)?;
+    let consistent = primitives > 0
+        && header.needs.has(Need::Spheres) == (counts.spheres > 0)
         && counts.smooth == if smooth { counts.triangles } else { 0 }
         && smooth == (counts.normals > 0);
     if !consistent {
@@ -123,7 +125,9 @@ fn view<'a, K: Kernel>(header: &Header, sections: &'a [u8]) -> Option<(Bvh<'a, K
         root: header.root,
         nodes: reader.records(counts.nodes)?,
         triangles: reader.records(counts.triangles)?,
-        ids: reader.integers(counts.triangles, header.needs.has(Need::WideIds))?,
+        // What the profile lacks the scene was found not to need, and then there are none.
+        spheres: if P::NEEDS.has(Need::Spheres) { reader.records(counts.spheres)? } else { &[] },
+        ids: reader.integers(primitives, header.needs.has(Need::WideIds))?,
     };
     let shading = Shading {
         normal_indices: reader.integers(counts.smooth.checked_mul(3)?, header.needs.has(Need::WideNormals))?,

@@ -44,9 +44,8 @@ pub(crate) fn shade<'a, P: Profile>(
     stack: &mut Stack<P::Kernel>,
     stats: &mut impl Stats,
 ) -> Option<Shaded<'a, P>> {
-    let (triangle, material) = scene.surface(hit)?;
+    let (surface, material) = scene.surface(ray, hit)?;
     let lustre = scene.lustre(material);
-    let surface = P::Kernel::resolve(ray, triangle);
     let normal = shading_normal(scene, hit, &surface);
     let shine = lustre.filter(|lustre| P::NEEDS.highlights() && !lustre.specular_is_black());
     let along = shine.map(|_| P::Kernel::heading(ray));
@@ -87,9 +86,9 @@ fn lobe<P: Profile>(lustre: &Lustre, along: UnitOf<P>, normal: UnitOf<P>, toward
     SpaceOf::<P>::lobe(a, b, lustre.exponent_q2)
 }
 
-/// The interpolated normal on the geometric normal's side, or that one for a flat triangle.
+/// The interpolated normal on the geometric normal's side, or that one for a flat triangle or a sphere.
 fn shading_normal<P: Profile>(scene: &Scene<'_, P>, hit: u32, surface: &Surface<SpaceOf<P>>) -> UnitOf<P> {
-    if !P::NEEDS.has(Need::SmoothNormals) {
+    if !P::NEEDS.has(Need::SmoothNormals) || scene.bvh.sphere(hit).is_some() {
         return surface.normal;
     }
     let interpolated = scene
@@ -137,14 +136,19 @@ fn direct<P: Profile>(
 }
 
 impl<'a, P: Profile> Scene<'a, P> {
-    /// The triangle and the material of a hit; `None` for a miss.
+    /// The surface and the material of a hit; `None` for a miss.
     #[inline]
-    fn surface(&self, hit: u32) -> Option<(&'a <P::Kernel as Kernel>::Triangle, &'a Material)> {
+    fn surface(&self, ray: &RayOf<P>, hit: u32) -> Option<(Surface<SpaceOf<P>>, &'a Material)> {
         if hit == NONE {
             return None;
         }
+        if let Some(sphere) = self.bvh.sphere(hit) {
+            let material = self.shading.materials.get(P::Kernel::sphere_material(sphere) as usize)?;
+            return Some((P::Kernel::resolve_sphere(ray, sphere), material));
+        }
         let triangle = self.bvh.triangles.get(hit as usize)?;
-        Some((triangle, self.shading.materials.get(P::Kernel::material(triangle) as usize)?))
+        let material = self.shading.materials.get(P::Kernel::material(triangle) as usize)?;
+        Some((P::Kernel::resolve(ray, triangle), material))
     }
 
     /// What a material is more than matt.
