@@ -38,15 +38,18 @@ impl Blob {
 }
 
 /// What the tree's builder and the kernel made, in the order of the blob.
-pub(super) struct Parts<'a, N, T> {
+pub(super) struct Parts<'a, N, T, S> {
     pub(super) plain: Plain,
     pub(super) root: u32,
     pub(super) depth: u8,
     pub(super) arithmetic: Arithmetic,
     pub(super) nodes: N,
     pub(super) triangles: T,
+    pub(super) spheres: S,
     /// The file's number of each triangle.
     pub(super) ids: &'a [u32],
+    /// The file's number of each sphere, behind all triangles.
+    pub(super) sphere_ids: &'a [u32],
     pub(super) materials: &'a [Material],
     pub(super) lustres: &'a [Lustre],
 }
@@ -92,15 +95,22 @@ impl Writer {
 pub(super) fn write<K: Kernel>(
     model: &Model,
     grid: &Grid,
-    parts: Parts<'_, impl ExactSizeIterator<Item = K::Node>, impl ExactSizeIterator<Item = K::Triangle>>,
+    parts: Parts<
+        '_,
+        impl ExactSizeIterator<Item = K::Node>,
+        impl ExactSizeIterator<Item = K::Triangle>,
+        impl ExactSizeIterator<Item = K::Sphere>,
+    >,
 ) -> Result<Blob, PrepareError> {
     let (normals, corners) = normals::<K>(model, parts.ids);
     let lights: Vec<_> = model.lights.iter().map(|light| header::light(light, grid)).collect();
-    let wide_ids = model.triangles.len() > 1 << 16;
+    let wide_ids = model.triangles.len() + model.spheres.len() > 1 << 16;
+    let ids = [parts.ids, parts.sphere_ids].concat();
     // The largest index is kept for flat triangles.
     let wide_normals = normals.len() >= 1 << 16;
     let needs = header::needs(model, parts.materials, parts.lustres)
         .with(Need::SmoothNormals, !corners.is_empty())
+        .with(Need::Spheres, !parts.sphere_ids.is_empty())
         .with(Need::WideIds, wide_ids)
         .with(Need::WideNormals, wide_normals);
     let header = Header {
@@ -117,6 +127,7 @@ pub(super) fn write<K: Kernel>(
         counts: Counts {
             nodes: parts.nodes.len() as u32,
             triangles: parts.triangles.len() as u32,
+            spheres: parts.spheres.len() as u32,
             smooth: corners.len() as u32 / 3,
             normals: normals.len() as u32,
             materials: parts.materials.len() as u32,
@@ -124,6 +135,7 @@ pub(super) fn write<K: Kernel>(
             lights: lights.len() as u32,
         },
         file_triangles: model.triangles.len() as u32,
+        file_spheres: model.spheres.len() as u32,
         arithmetic: parts.arithmetic,
         source: SourceGrid { origin_bits: grid.origin.to_array().map(f64::to_bits), scale_bits: grid.scale.to_bits() },
     };
@@ -134,7 +146,8 @@ pub(super) fn write<K: Kernel>(
         encoded.len(),
         parts.nodes.len() * size_of::<K::Node>(),
         parts.triangles.len() * size_of::<K::Triangle>(),
-        parts.ids.len() * integer(wide_ids),
+        parts.spheres.len() * size_of::<K::Sphere>(),
+        ids.len() * integer(wide_ids),
         corners.len() * integer(wide_normals),
         size_of_val(normals.as_slice()),
         size_of_val(parts.materials),
@@ -159,7 +172,8 @@ pub(super) fn write<K: Kernel>(
     writer.records(encoded.into_iter());
     writer.records(parts.nodes);
     writer.records(parts.triangles);
-    writer.integers(parts.ids, wide_ids);
+    writer.records(parts.spheres);
+    writer.integers(&ids, wide_ids);
     writer.integers(&corners, wide_normals);
     writer.records(normals.into_iter());
     writer.records(parts.materials.iter().copied());

@@ -10,9 +10,6 @@ use crate::model::{Background, Falloff, Material, MaterialKind, Model, Projectio
 /// Something that no kernel has yet, and without which the picture would be another one.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 pub enum Unsupported {
-    /// A sphere.
-    #[error("spheres are not supported yet by any kernel; use a mesh")]
-    Spheres,
     /// Parallel camera rays.
     #[error("orthographic projection is not supported yet by any kernel; use \"perspective\"")]
     Orthographic,
@@ -38,9 +35,6 @@ pub(super) struct Plain {
 /// # Errors
 /// Where it is in another.
 pub(super) fn plain(model: &Model) -> Result<Plain, Unsupported> {
-    if !model.spheres.is_empty() {
-        return Err(Unsupported::Spheres);
-    }
     if model.lights.iter().any(|light| light.falloff != Falloff::None) {
         return Err(Unsupported::Falloff);
     }
@@ -88,7 +82,7 @@ fn extras(material: &Material) -> Vec<&'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Checker, Light, LightKind, RenderSettings, Specular, Sphere};
+    use crate::model::{Checker, Light, LightKind, RenderSettings, Specular};
 
     #[test]
     fn what_would_be_another_scene_is_refused() {
@@ -98,8 +92,6 @@ mod tests {
             plain(&model).unwrap_err()
         };
         assert_eq!(plain(&Model::default()).map(|plain| plain.background), Ok(DVec3::ZERO));
-        let sphere = Sphere { centre: DVec3::ZERO, radius: 1.0, material: 0 };
-        assert_eq!(refusal(&|m| m.spheres.push(sphere)), Unsupported::Spheres);
         let parallel = Projection::Orthographic { height: 1.0 };
         assert_eq!(refusal(&|m| m.camera.projection = parallel), Unsupported::Orthographic);
         let sky = Background::Sky { bottom: DVec3::ZERO, top: DVec3::ONE };
