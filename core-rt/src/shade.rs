@@ -137,7 +137,7 @@ fn direct<P: Profile>(
 
 impl<'a, P: Profile> Scene<'a, P> {
     /// The surface and the material of a hit; `None` for a miss.
-    #[inline]
+    #[inline(always)]
     fn surface(&self, ray: &RayOf<P>, hit: u32) -> Option<(Surface<SpaceOf<P>>, &'a Material)> {
         if hit == NONE {
             return None;

@@ -23,7 +23,9 @@ pub struct Draft<K: Kernel> {
     pub nodes: Vec<K::Node>,
     /// Triangles in the order of the leaves.
     pub triangles: Vec<K::Triangle>,
-    /// The file's number of each triangle.
+    /// Spheres in the order of the leaves.
+    pub spheres: Vec<K::Sphere>,
+    /// The file's number of each triangle, then of each sphere.
     pub ids: Vec<u32>,
     /// Three a triangle, or none.
     pub normal_indices: Vec<u32>,
@@ -56,7 +58,8 @@ impl<K: Kernel> Draft<K> {
             header,
             nodes: take(&mut rest, counts.nodes)?,
             triangles: take(&mut rest, counts.triangles)?,
-            ids: take_integers(&mut rest, counts.triangles, needs.has(Need::WideIds))?,
+            spheres: take(&mut rest, counts.spheres)?,
+            ids: take_integers(&mut rest, counts.triangles.checked_add(counts.spheres)?, needs.has(Need::WideIds))?,
             normal_indices: take_integers(&mut rest, counts.smooth.checked_mul(3)?, needs.has(Need::WideNormals))?,
             normals: take(&mut rest, counts.normals)?,
             materials: take(&mut rest, counts.materials)?,
@@ -74,6 +77,7 @@ impl<K: Kernel> Draft<K> {
         put(&mut bytes, &header);
         put(&mut bytes, &self.nodes);
         put(&mut bytes, &self.triangles);
+        put(&mut bytes, &self.spheres);
         put_integers(&mut bytes, &self.ids, self.header.needs.has(Need::WideIds));
         put_integers(&mut bytes, &self.normal_indices, self.header.needs.has(Need::WideNormals));
         put(&mut bytes, &self.normals);
@@ -161,7 +165,7 @@ pub fn sample<K: Kernel>(smooth: bool) -> Blob {
 /// Renders the first tile of an accepted scene and the last, of at most 8x8 pixels, and returns the pixels of both.
 ///
 /// # Panics
-/// Where the renderer does; where a ray looks at a node or a triangle twice.
+/// Where the renderer does; where a ray looks at a node or a primitive twice.
 pub fn corners<K: Kernel>(scene: &Scene<'_, Full<K>>) -> Vec<Rgb888> {
     let [width, height] = scene.header.size;
     let side = |picture: u16| picture.min(8);
@@ -178,9 +182,10 @@ pub fn corners<K: Kernel>(scene: &Scene<'_, Full<K>>) -> Vec<Rgb888> {
         seen.extend_from_slice(
             render_tile(scene, tile, &mut workspace, &mut counts).expect("the workspace is the largest there is"),
         );
-        let (nodes, triangles) = (scene.bvh.nodes.len() as u64, scene.bvh.triangles.len() as u64);
+        let nodes = scene.bvh.nodes.len() as u64;
+        let primitives = (scene.bvh.triangles.len() + scene.bvh.spheres.len()) as u64;
         assert!(counts.box_tests <= 2 * nodes * counts.rays(), "{counts:?} of {nodes} nodes");
-        assert!(counts.triangle_tests <= triangles * counts.rays(), "{counts:?} of {triangles} triangles");
+        assert!(counts.triangle_tests <= primitives * counts.rays(), "{counts:?} of {primitives} primitives");
     }
     seen
 }

@@ -54,11 +54,7 @@ fn triangles<P: Profile>(
 }
 
 /// Every sphere must be one that the kernel holds, and what it refers to must be there.
-fn spheres<P: Profile>(
-    header: &Header,
-    bvh: &Bvh<'_, P>,
-    shading: &Shading<'_, P::Kernel>,
-) -> Result<(), BlobError> {
+fn spheres<P: Profile>(header: &Header, bvh: &Bvh<'_, P>, shading: &Shading<'_, P::Kernel>) -> Result<(), BlobError> {
     for (index, (sphere, place)) in (0..).zip(bvh.spheres.iter().zip(bvh.triangles.len() as u32..)) {
         let material = P::Kernel::sphere_material(sphere);
         let consistent = P::Kernel::sphere(&P::Kernel::ball(sphere), material).is_some_and(|made| made == *sphere);

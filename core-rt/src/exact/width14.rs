@@ -174,7 +174,8 @@ impl Width for Width14 {
             let fine = round_shift(direction[axis] * rest_q26, 26 - OFFSET_BITS); // 2^13 * 2^11
             (s[axis] << OFFSET_BITS).wrapping_add(coarse).wrapping_add(fine)
         });
-        let point = [0, 1, 2].map(|axis| (centre[axis] << POINT_BITS) + round_shift(offset[axis], OFFSET_BITS - POINT_BITS));
+        let point =
+            [0, 1, 2].map(|axis| (centre[axis] << POINT_BITS) + round_shift(offset[axis], OFFSET_BITS - POINT_BITS));
         (point, offset)
     }
 

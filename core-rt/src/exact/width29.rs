@@ -153,7 +153,8 @@ impl Width for Width29 {
             let moved_q62 = i128::from(direction[axis]) * t_q62; // at most 2^31 * 2^61
             (s[axis] << OFFSET_BITS) + round_shift_wide(moved_q62, 62 - OFFSET_BITS)
         });
-        let point = [0, 1, 2].map(|axis| (centre[axis] << POINT_BITS) + round_shift(offset[axis], OFFSET_BITS - POINT_BITS));
+        let point =
+            [0, 1, 2].map(|axis| (centre[axis] << POINT_BITS) + round_shift(offset[axis], OFFSET_BITS - POINT_BITS));
         (point, offset)
     }
 

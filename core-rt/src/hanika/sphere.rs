@@ -28,8 +28,7 @@ pub(super) const RADIUS_MIN: i32 = 128;
 #[inline]
 pub(super) fn intersect<S: Slab>(ray: &Ray<S>, sphere: &SphereRecord<i32>, leaves: bool) -> Option<i32> {
     let s = sub(ray.origin, sphere.centre());
-    let Crossing { numerator, denominator, .. } =
-        crossing::<Width29>(s, ray.direction, sphere.radius(), leaves)?;
+    let Crossing { numerator, denominator, .. } = crossing::<Width29>(s, ray.direction, sphere.radius(), leaves)?;
     // |D|^2 t in units of directions, below 2^63, times their length in Q31. `max` says that a denominator is not 0.
     let t = ((numerator << UNIT_BITS) + denominator - 1) / denominator.max(1);
     (t < i128::from(ray.reach)).then_some(t as i32)
