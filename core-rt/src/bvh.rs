@@ -93,6 +93,23 @@ type RayOf<P> = <<P as Profile>::Kernel as Kernel>::Ray;
 type DepthOf<P> = <<P as Profile>::Kernel as Kernel>::Depth;
 type DistanceOf<P> = <<P as Profile>::Kernel as Kernel>::Distance;
 
+/// What a leaf holds.
+enum Primitive<'a, K: Kernel> {
+    Triangle(&'a K::Triangle),
+    /// A sphere, and whether the ray starts on it.
+    Sphere(&'a K::Sphere, bool),
+}
+
+impl<K: Kernel> Primitive<'_, K> {
+    #[inline(always)]
+    fn intersect(self, ray: &K::Ray) -> Option<K::Depth> {
+        match self {
+            Self::Triangle(triangle) => K::intersect(ray, triangle),
+            Self::Sphere(sphere, leaves) => K::intersect_sphere(ray, sphere, leaves),
+        }
+    }
+}
+
 /// A tree over a blob's sections.
 #[derive(Clone, Copy, Debug)]
 pub struct Bvh<'a, P: Profile> {
@@ -134,7 +151,7 @@ impl<'a, P: Profile> Bvh<'a, P> {
         ray: &RayOf<P>,
         stack: &mut Stack<P::Kernel>,
         stats: &mut impl Stats,
-        mut visit: impl FnMut(u32, Option<DepthOf<P>>) -> Option<DistanceOf<P>>,
+        mut visit: impl FnMut(u32, Primitive<'_, P::Kernel>) -> Option<DistanceOf<P>>,
     ) {
         let mut limit = P::Kernel::reach(ray);
         let (skip, octant) = (P::Kernel::skip(ray), P::Kernel::octant(ray));
@@ -148,7 +165,7 @@ impl<'a, P: Profile> Bvh<'a, P> {
                 for (index, sphere) in (first..).zip(run) {
                     stats.sphere();
                     // A ray that starts on a sphere may meet it again, from inside.
-                    match visit(index, P::Kernel::intersect_sphere(ray, sphere, index == skip)) {
+                    match visit(index, Primitive::Sphere(sphere, index == skip)) {
                         Some(nearer) => limit = nearer,
                         None => return,
                     }
@@ -158,7 +175,7 @@ impl<'a, P: Profile> Bvh<'a, P> {
                 for (index, triangle) in (first..).zip(run) {
                     if index != skip {
                         stats.triangle();
-                        match visit(index, P::Kernel::intersect(ray, triangle)) {
+                        match visit(index, Primitive::Triangle(triangle)) {
                             Some(nearer) => limit = nearer,
                             None => return,
                         }
@@ -242,8 +259,8 @@ impl<P: Profile> Intersect<P::Kernel> for Bvh<'_, P> {
         let mut best: Option<DepthOf<P>> = None;
         let mut hit = NONE;
         let mut limit = P::Kernel::reach(ray);
-        self.walk(ray, stack, stats, |index, depth| {
-            if let Some(depth) = depth {
+        self.walk(ray, stack, stats, |index, primitive| {
+            if let Some(depth) = primitive.intersect(ray) {
                 let nearer = match &best {
                     None => true,
                     Some(best) => match P::Kernel::order(&depth, best) {
@@ -266,8 +283,8 @@ impl<P: Profile> Intersect<P::Kernel> for Bvh<'_, P> {
     fn any(&self, ray: &RayOf<P>, stack: &mut Stack<P::Kernel>, stats: &mut impl Stats) -> bool {
         let mut hit = false;
         let limit = P::Kernel::reach(ray);
-        self.walk(ray, stack, stats, |_, depth| {
-            hit = depth.is_some();
+        self.walk(ray, stack, stats, |_, primitive| {
+            hit = primitive.intersect(ray).is_some();
             (!hit).then_some(limit)
         });
         hit
