@@ -8,7 +8,7 @@ use agree::agree;
 use glam::DVec3;
 use host_tools::engine;
 use host_tools::import::{Embedded, load_from};
-use host_tools::model::{Light, LightKind, Model, Projection, Transfer, Triangle};
+use host_tools::model::{Light, LightKind, Model, Projection, Sphere, Transfer, Triangle};
 use host_tools::prepare::{Options, Prepared};
 use reader::{Blob, crc32, read};
 
@@ -47,6 +47,28 @@ fn carpet(n: u32) -> Model {
     model
 }
 
+/// The built-in scene among spheres, one of them too small for any grid; or these alone.
+fn with_spheres(alone: bool) -> Model {
+    let mut model = if alone { flat() } else { built_in() };
+    let (low, high) = model
+        .positions
+        .iter()
+        .fold((model.positions[0], model.positions[0]), |(low, high), &p| (low.min(p), high.max(p)));
+    let size = (high - low).max_element();
+    if alone {
+        model.triangles.clear();
+        model.positions.clear();
+        model.normals.clear();
+    }
+    let sphere = |i: u32| {
+        let share = DVec3::new(f64::from(i % 3), f64::from(i % 4), f64::from(i % 5)) / 5.0;
+        let radius = if i == 7 { 1e-12 } else { size * f64::from(i + 1) / 100.0 };
+        Sphere { centre: low + (high - low) * share, radius, material: i % model.materials.len() as u32 }
+    };
+    model.spheres = (0..30).map(sphere).collect();
+    model
+}
+
 fn prepare(model: &Model, kernel: &str) -> Prepared {
     engine::by_name(kernel).unwrap().prepare(model, &Options::default()).unwrap()
 }
@@ -70,6 +92,33 @@ fn what_goes_in_is_read_by_the_document() {
         assert!(mixed.corners.contains(&None) && mixed.corners.iter().any(Option::is_some));
         assert!(mixed.header.depth > 5 && mixed.header.needs >> 8 == 0);
         assert!(flat.corners.is_empty() && flat.normals.is_empty());
+    }
+}
+
+#[test]
+fn spheres_are_read_by_the_document() {
+    for kernel in KERNELS {
+        for alone in [false, true] {
+            let model = with_spheres(alone);
+            let (Prepared { degenerates, .. }, found) = (prepare(&model, kernel), prepared(&model, kernel));
+            assert_eq!(agree(&found, &model), Ok(()), "{kernel}");
+            assert_eq!((degenerates.spheres, found.spheres.len()), (1, 29), "{kernel}");
+            let fault = |change: &dyn Fn(&mut Blob, &mut Model)| {
+                let (mut other, mut model) = (found.clone(), model.clone());
+                change(&mut other, &mut model);
+                agree(&other, &model).unwrap_err()
+            };
+            let first = found.triangles.len();
+            assert_eq!(fault(&|b, _| b.spheres[3].centre[1] += 1), "centre and radius");
+            assert_eq!(fault(&|b, _| b.spheres[4].radius -= 1), "centre and radius");
+            assert_eq!(fault(&|b, _| b.spheres[5].material = 1 << 20), {
+                if kernel == "exact14" { "range of materials" } else { "a material that is not there" }
+            });
+            assert_eq!(fault(&|b, _| b.ids[first + 1] = b.header.file_triangles as u32 + 30), "an id beyond the file");
+            assert_eq!(fault(&|b, _| b.ids.swap(first, first + 1)), "centre and radius");
+            assert_eq!(fault(&|_, m| m.spheres[7].radius = 1.0), "spheres with room are there, and no others");
+            assert_eq!(fault(&|b, _| b.header.file_spheres += 1), "spheres in the file");
+        }
     }
 }
 
