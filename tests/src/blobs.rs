@@ -141,21 +141,36 @@ pub fn repaired(bytes: &[u8], kernel: u16) -> Blob {
 /// Where it cannot be prepared.
 #[must_use]
 pub fn sample<K: Kernel>(smooth: bool) -> Blob {
+    prepared_sample::<K>(smooth, "")
+}
+
+/// [`sample`], smooth, with three spheres among its triangles, one of which reaches all ends of the scene.
+///
+/// # Panics
+/// Where it cannot be prepared.
+#[must_use]
+pub fn sample_with_spheres<K: Kernel>() -> Blob {
+    const SPHERES: &str = "[[sphere]]\ncentre = [2, 2, 2]\nradius = 2\nmaterial = 'floor'\n\
+                           [[sphere]]\ncentre = [1, 1, 3]\nradius = 0.5\nmaterial = 'lamp'\n\
+                           [[sphere]]\ncentre = [3, 1, 3]\nradius = 0.5\nmaterial = 'floor'\n";
+    prepared_sample::<K>(true, SPHERES)
+}
+
+fn prepared_sample<K: Kernel>(smooth: bool, spheres: &str) -> Blob {
     const VERTICES: &str = "mtllib s.mtl\nv 0 0 0\nv 4 0 0\nv 4 0 4\nv 0 0 4\nv 1 1 1\nv 3 1 2\nv 2 3 2\nv 2 1 3\n\
                             vn 0 1 0\nvn 1 1 0\nvn 0 1 1\n";
+    const SCENE: &str = "model = 's.obj'\n[camera]\nposition = [1, 3, 8]\nlook_at = [2, 1, 2]\n[[light]]\nposition = [3, 5, 3]\n\
+         [[light]]\nkind = 'directional'\ndirection = [-1, -3, -1]\ncolour = [0.3, 0.3, 0.2]\n\
+         [background]\ncolour = [0.1, 0.2, 0.4]\n[render]\nsize = [12, 9]\nambient = [0.1, 0.1, 0.1]\n";
     const FLAT: &str = "usemtl floor\nf 1 4 3 2\nusemtl lamp\nf 5 7 6\nf 6 7 8\nf 8 7 5\n";
     const SMOOTH: &str =
         "usemtl floor\nf 1//1 4//1 3//1 2//1\nusemtl lamp\nf 5//2 7//1 6//3\nf 6//3 7//1 8//2\nf 8 7 5\n";
     let obj = [VERTICES, if smooth { SMOOTH } else { FLAT }].concat();
+    let scene = [SCENE, spheres].concat();
     let files: [(&str, &[u8]); 3] = [
         ("s.obj", obj.as_bytes()),
         ("s.mtl", b"newmtl floor\nKd 0.5 0.6 0.7\nnewmtl lamp\nKd 0.9 0.2 0.1\nKe 0.25 0 0\n"),
-        (
-            "s.toml",
-            b"model = 's.obj'\n[camera]\nposition = [1, 3, 8]\nlook_at = [2, 1, 2]\n[[light]]\nposition = [3, 5, 3]\n\
-              [[light]]\nkind = 'directional'\ndirection = [-1, -3, -1]\ncolour = [0.3, 0.3, 0.2]\n\
-              [background]\ncolour = [0.1, 0.2, 0.4]\n[render]\nsize = [12, 9]\nambient = [0.1, 0.1, 0.1]\n",
-        ),
+        ("s.toml", scene.as_bytes()),
     ];
     let model = load_from(&Embedded(&files), "s.toml").expect("a good scene").model;
     let tree = TreeOptions { leaf_max: 1, leaf_always: true, ..TreeOptions::default() };
