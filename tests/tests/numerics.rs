@@ -1,6 +1,9 @@
 //! The numbers at the ends of their documented ranges: every bound that core-rt states, measured against f64 or wide
 //! integers. One table holds all tolerances; an entry that is too generous fails as stale.
 
+#[path = "numerics/spheres.rs"]
+mod spheres;
+
 use core_rt::colour::{Colour, Rgb16, Transfer};
 use core_rt::exact::{Exact, Ray, Reciprocal, Width, Width14, Width20, Width29};
 use core_rt::kernel::{Bounds, Kernel, NONE};
@@ -15,7 +18,7 @@ use tests::rays::{self, Rays};
 
 /// The largest error of each operation, in the unit that its name gives. What is measured must be at most this, and at
 /// least a quarter of it.
-const TOLERANCES: [(&str, f64); 11] = [
+const TOLERANCES: [(&str, f64); 17] = [
     ("exact14 normalise, 2^-14", 3.0),
     ("exact29 normalise, 2^-30", 3.0),
     ("exact14 depth, 2^-13", 8.0),
@@ -27,6 +30,13 @@ const TOLERANCES: [(&str, f64); 11] = [
     ("exact14 point, grid units", 0.28125),
     ("exact20 point, grid units", 0.00390625),
     ("exact29 point, grid units", 0.00390625),
+    ("exact14 sphere point, grid units", 0.03174),
+    ("exact20 sphere point, grid units", 0.001954),
+    ("exact29 sphere point, grid units", 0.001954),
+    ("exact14 sphere normal, 2^-14", 5.0),
+    // A t that is rounded up to a multiple of 1 / |D|^2 moves the point by 2^-20, with the least radius half of that in the normal.
+    ("exact20 sphere normal, 2^-30", 515.0),
+    ("exact29 sphere normal, 2^-30", 3.0),
 ];
 
 #[track_caller]

@@ -127,7 +127,7 @@ impl Width for Width20 {
         Width29::point(origin, direction, numerator.into(), denominator.into())
     }
 
-    /// As [`Width29`]'s, with t <= 1.
+    /// As [`Width29`]'s, with t <= 1; but what a t that was rounded up to a multiple of 1 / |D|^2 adds is up to 2^-20.
     #[inline]
     fn on_sphere(
         centre: Triple<i64>,

@@ -14,3 +14,4 @@ mod pictures;
 mod rays;
 mod scene_files;
 mod scene_toml;
+mod spheres;

@@ -150,7 +150,6 @@ fn materials_that_cannot_be() {
 #[test]
 fn what_kernels_do_not_have() {
     for (lines, message) in [
-        ("[[sphere]]\ncentre = [0, 0, 0]\nradius = 1", "spheres are not supported yet by any kernel; use a mesh"),
         ("[camera]\nprojection = 'orthographic'\nheight = 3", {
             "orthographic projection is not supported yet by any kernel; use \"perspective\""
         }),
@@ -188,9 +187,11 @@ fn what_kernels_draw_more_plainly() {
 fn spheres_alone() {
     let folder = Folder::with_triangle();
     folder.write("scene.toml", b"[[sphere]]\ncentre = [0, 0, 0]\nradius = 1\nmaterial = 'gold'\n");
-    folder.refuses(
-        "inspect scene.toml",
-        "warning: scene.toml:4: materials that no table defines, drawn in grey (Kd 0.8): `gold`\n\
-         error: scene.toml: spheres are not supported yet by any kernel; use a mesh\n",
-    );
+    let warning = "warning: scene.toml:4: materials that no table defines, drawn in grey (Kd 0.8): `gold`\n";
+    for kernel in ["exact14", "exact29", "hanika-cons", "f32"] {
+        for line in ["inspect scene.toml", "prep scene.toml -o out.blob", "render scene.toml -o out.png --size 8x6"] {
+            folder.succeeds(&format!("{line} --kernel {kernel}"), warning);
+        }
+    }
+    folder.succeeds("inspect out.blob", "");
 }

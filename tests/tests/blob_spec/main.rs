@@ -109,7 +109,7 @@ fn spheres_are_read_by_the_document() {
                 agree(&other, &model).unwrap_err()
             };
             let first = found.triangles.len();
-            assert_eq!(fault(&|b, _| b.spheres[3].centre[1] += 1), "centre and radius");
+            assert_eq!(fault(&|_, m| m.spheres[3].centre.y += 0.01), "centre and radius");
             assert_eq!(fault(&|b, _| b.spheres[4].radius -= 1), "centre and radius");
             assert_eq!(fault(&|b, _| b.spheres[5].material = 1 << 20), {
                 if kernel == "exact14" { "range of materials" } else { "a material that is not there" }
