@@ -7,17 +7,13 @@
 //! The ray starts outside iff c > 0. Then it hits iff b < 0 and b^2 - a c >= 0, first at the lesser t: a tangent touches.
 //! Otherwise it starts inside, or on the sphere, and hits at the greater t, if that is not 0. These are decided without error.
 //!
-//! t is a / multiple of which: **it is rounded up to a multiple of 1 / a**, which is a fraction as a triangle's t is, and
-//! ordered with those exactly. So it is at least 1 / a, and at most 1 / |D| grid units beyond the sphere. At the rounded t,
+//! **t is rounded up to a multiple of 1 / a**: a fraction as a triangle's t is, and ordered with those exactly. So it is at least 1 / a, and at most 1 / |D| grid units beyond the sphere. At the rounded t,
 //! D . (S + t D) = b + a t is a whole number of the sign of the true one: the outward normal there is towards the viewer
 //! exactly where the ray started outside.
 //!
 //! **A ray that starts on a sphere** starts off it on one side, by [`Width::stand_off`], and which side that is c tells. Outside
-//! it never meets the sphere again, which is convex. Inside it meets it at the greater t. Let p be the resolved point, at
-//! distance q from the centre and d from the sphere, h the distance to stand off, and e what rounding to the grid and
-//! the normal's errors move the origin by. The normal at p is along p - centre, so the origin is h - e - d outside, or, where
-//! q >= h, h - e - d inside. With h = 3/2, e = 0.87 and d = 0.06 (`exact14`), or h = 1, e = 0.87 and d = 0.01 (the others),
-//! that is more than 0; and q >= h holds with radii from [`RADIUS_MIN`].
+//! it never meets the sphere again, which is convex. Inside it meets it at the greater t. That the side is the right one for
+//! radii from [`RADIUS_MIN`] is shown in `docs/EXACTNESS.md`.
 
 use super::ray::Ray;
 use super::triangle::{Depth, within_reach};
