@@ -22,6 +22,7 @@ pub(crate) fn albedo<P: Profile>(
         albedo = product(&albedo, &texel);
     }
     if P::NEEDS.has(Need::VertexColours)
+        && scene.bvh.sphere(hit).is_none()
         && let Some([a, b, c]) = scene.shading.paint.colours_of(hit)
     {
         let channel = |a: u16, b: u16, c: u16| {

@@ -1,7 +1,8 @@
 //! Bounding volume hierarchy: packed references, and the one traversal for all kernels.
 //!
 //! A binary tree whose nodes hold both children's boxes, so that one record decides which way to go. It is laid out in
-//! preorder, and triangles stand in the order of the leaves. The near child is visited first, the far one waits on a
+//! preorder, and triangles stand in the order of the leaves, and so do spheres. A leaf holds either; primitives are numbered
+//! through, triangles first. The near child is visited first, the far one waits on a
 //! stack that the caller provides; its depth is known when the tree is built (Shirley & Morley, "Realistic Ray Tracing"
 //! 2003, 10; Wald, Boulos & Shirley, "Ray Tracing Deformable Scenes using Dynamic BVHs", 2007).
 //!
@@ -12,18 +13,19 @@ use core::cmp::Ordering;
 
 use heapless::VecView;
 
-use crate::kernel::{Kernel, NONE};
+use crate::kernel::{Bounds, Kernel, NONE};
+use crate::profile::{Need, Profile};
 use crate::section::Integers;
 use crate::stats::Stats;
 
-/// What a child is: another node, or a run of triangles.
+/// What a child is: another node, or a run of triangles or of spheres.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Child {
     /// The index of a node.
     Node(u32),
-    /// Triangles `first .. first + count`.
+    /// Primitives `first .. first + count`, all of them triangles or all of them spheres.
     Leaf {
-        /// The first triangle.
+        /// The first primitive.
         first: u32,
         /// How many, 1 to [`Child::COUNT_MAX`].
         count: u32,
@@ -33,7 +35,7 @@ pub enum Child {
 impl Child {
     /// The largest leaf.
     pub const COUNT_MAX: u32 = 64;
-    /// Triangles and nodes are numbered below this.
+    /// Primitives and nodes are numbered below this.
     pub const INDEX_END: u32 = 1 << 25;
 
     /// Bit 31: a leaf; bits 25 to 30: its count less one; the rest: the index.
@@ -87,59 +89,113 @@ pub trait Intersect<K: Kernel> {
     }
 }
 
+type RayOf<P> = <<P as Profile>::Kernel as Kernel>::Ray;
+type DepthOf<P> = <<P as Profile>::Kernel as Kernel>::Depth;
+type DistanceOf<P> = <<P as Profile>::Kernel as Kernel>::Distance;
+
+/// What a leaf holds.
+enum Primitive<'a, K: Kernel> {
+    Triangle(&'a K::Triangle),
+    /// A sphere, and whether the ray starts on it.
+    Sphere(&'a K::Sphere, bool),
+}
+
+impl<K: Kernel> Primitive<'_, K> {
+    #[inline(always)]
+    fn intersect(self, ray: &K::Ray) -> Option<K::Depth> {
+        match self {
+            Self::Triangle(triangle) => K::intersect(ray, triangle),
+            Self::Sphere(sphere, leaves) => K::intersect_sphere(ray, sphere, leaves),
+        }
+    }
+}
+
 /// A tree over a blob's sections.
 #[derive(Clone, Copy, Debug)]
-pub struct Bvh<'a, K: Kernel> {
+pub struct Bvh<'a, P: Profile> {
     /// The root, packed.
     pub root: u32,
     /// Nodes in preorder.
-    pub nodes: &'a [K::Node],
+    pub nodes: &'a [<P::Kernel as Kernel>::Node],
     /// Triangles in the order of the leaves.
-    pub triangles: &'a [K::Triangle],
-    /// The id of each triangle: its index in the file.
+    pub triangles: &'a [<P::Kernel as Kernel>::Triangle],
+    /// Spheres in the order of the leaves; none where the profile has none.
+    pub spheres: &'a [<P::Kernel as Kernel>::Sphere],
+    /// The id of each primitive: its index in the file.
     pub ids: Integers<'a>,
 }
 
-impl<K: Kernel> Bvh<'_, K> {
-    /// Visits every triangle that may be hit before the limit that `visit` returns, nearest boxes first, until it returns
-    /// none.
+impl<'a, P: Profile> Bvh<'a, P> {
+    /// The sphere of a primitive's index; `None` for a triangle's.
+    #[inline(always)]
+    #[must_use]
+    pub fn sphere(&self, index: u32) -> Option<&'a <P::Kernel as Kernel>::Sphere> {
+        if !P::NEEDS.has(Need::Spheres) {
+            return None;
+        }
+        self.spheres.get((index as usize).checked_sub(self.triangles.len())?)
+    }
+
+    /// The boxes of all primitives, triangles first.
+    pub fn bounds(&self) -> impl Iterator<Item = Bounds> + 'a {
+        let triangles = self.triangles.iter().map(|triangle| Bounds::of(&P::Kernel::vertices(triangle)));
+        let spheres = if P::NEEDS.has(Need::Spheres) { self.spheres } else { &[] };
+        triangles.chain(spheres.iter().map(|sphere| P::Kernel::ball(sphere).bounds()))
+    }
+
+    /// Tests every primitive that may be hit before the limit that `visit` returns, nearest boxes first, until it returns
+    /// none. What it is given is the primitive's index and its hit.
     #[inline(always)]
     fn walk(
         &self,
-        ray: &K::Ray,
-        stack: &mut Stack<K>,
+        ray: &RayOf<P>,
+        stack: &mut Stack<P::Kernel>,
         stats: &mut impl Stats,
-        mut visit: impl FnMut(u32, &K::Triangle) -> Option<K::Distance>,
+        mut visit: impl FnMut(u32, Primitive<'_, P::Kernel>) -> Option<DistanceOf<P>>,
     ) {
-        let mut limit = K::reach(ray);
-        let (skip, octant) = (K::skip(ray), K::octant(ray));
+        let mut limit = P::Kernel::reach(ray);
+        let (skip, octant) = (P::Kernel::skip(ray), P::Kernel::octant(ray));
         let mut next = Some(self.root);
         stack.clear();
         while let Some((first, count)) = next.and_then(|child| self.leaf(octant, ray, child, limit, stack, stats)) {
-            let run = self.triangles.get(first as usize..(first + count) as usize).unwrap_or_default();
-            for (index, triangle) in (first..).zip(run) {
-                if index != skip {
-                    stats.triangle();
-                    match visit(index, triangle) {
+            if P::NEEDS.has(Need::Spheres)
+                && let Some(first_sphere) = (first as usize).checked_sub(self.triangles.len())
+            {
+                let run = self.spheres.get(first_sphere..first_sphere + count as usize).unwrap_or_default();
+                for (index, sphere) in (first..).zip(run) {
+                    stats.sphere();
+                    // A ray that starts on a sphere may meet it again, from inside.
+                    match visit(index, Primitive::Sphere(sphere, index == skip)) {
                         Some(nearer) => limit = nearer,
                         None => return,
                     }
                 }
+            } else {
+                let run = self.triangles.get(first as usize..(first + count) as usize).unwrap_or_default();
+                for (index, triangle) in (first..).zip(run) {
+                    if index != skip {
+                        stats.triangle();
+                        match visit(index, Primitive::Triangle(triangle)) {
+                            Some(nearer) => limit = nearer,
+                            None => return,
+                        }
+                    }
+                }
             }
-            next = waiting::<K>(stack, limit);
+            next = waiting::<P::Kernel>(stack, limit);
         }
     }
 
-    /// The first leaf at or below `child`, or below what waits, that the ray enters before the limit: its first triangle
+    /// The first leaf at or below `child`, or below what waits, that the ray enters before the limit: its first primitive
     /// and their count. One copy an octant, of the descent alone: it is most of the work and little code.
     #[inline(always)]
     fn leaf(
         &self,
         octant: usize,
-        ray: &K::Ray,
+        ray: &RayOf<P>,
         child: u32,
-        limit: K::Distance,
-        stack: &mut Stack<K>,
+        limit: DistanceOf<P>,
+        stack: &mut Stack<P::Kernel>,
         stats: &mut impl Stats,
     ) -> Option<(u32, u32)> {
         match octant {
@@ -157,10 +213,10 @@ impl<K: Kernel> Bvh<'_, K> {
     #[inline(never)]
     fn leaf_in<const OCTANT: usize>(
         &self,
-        ray: &K::Ray,
+        ray: &RayOf<P>,
         mut child: u32,
-        limit: K::Distance,
-        stack: &mut Stack<K>,
+        limit: DistanceOf<P>,
+        stack: &mut Stack<P::Kernel>,
         stats: &mut impl Stats,
     ) -> Option<(u32, u32)> {
         loop {
@@ -171,8 +227,8 @@ impl<K: Kernel> Bvh<'_, K> {
             // A checked scene has the node; an end without it is what a traversal of nothing is.
             let node = self.nodes.get(index as usize)?;
             stats.boxes(2);
-            let [first, second] = K::children(node);
-            child = match K::enter::<OCTANT>(ray, node, limit) {
+            let [first, second] = P::Kernel::children(node);
+            child = match P::Kernel::enter::<OCTANT>(ray, node, limit) {
                 [Some(a), Some(b)] => {
                     let (near, far) = if b < a { (second, (first, a)) } else { (first, (second, b)) };
                     // A checked tree is no deeper than the stack.
@@ -181,7 +237,7 @@ impl<K: Kernel> Bvh<'_, K> {
                 }
                 [Some(_), None] => first,
                 [None, Some(_)] => second,
-                [None, None] => waiting::<K>(stack, limit)?,
+                [None, None] => waiting::<P::Kernel>(stack, limit)?,
             };
         }
     }
@@ -198,23 +254,23 @@ fn waiting<K: Kernel>(stack: &mut Stack<K>, limit: K::Distance) -> Option<u32> {
     None
 }
 
-impl<K: Kernel> Intersect<K> for Bvh<'_, K> {
-    fn closest(&self, ray: &K::Ray, stack: &mut Stack<K>, stats: &mut impl Stats) -> u32 {
-        let mut best: Option<K::Depth> = None;
+impl<P: Profile> Intersect<P::Kernel> for Bvh<'_, P> {
+    fn closest(&self, ray: &RayOf<P>, stack: &mut Stack<P::Kernel>, stats: &mut impl Stats) -> u32 {
+        let mut best: Option<DepthOf<P>> = None;
         let mut hit = NONE;
-        let mut limit = K::reach(ray);
-        self.walk(ray, stack, stats, |index, triangle| {
-            if let Some(depth) = K::intersect(ray, triangle) {
+        let mut limit = P::Kernel::reach(ray);
+        self.walk(ray, stack, stats, |index, primitive| {
+            if let Some(depth) = primitive.intersect(ray) {
                 let nearer = match &best {
                     None => true,
-                    Some(best) => match K::order(&depth, best) {
+                    Some(best) => match P::Kernel::order(&depth, best) {
                         Ordering::Less => true,
                         Ordering::Equal => self.ids.get(index) < self.ids.get(hit),
                         Ordering::Greater => false,
                     },
                 };
                 if nearer {
-                    limit = K::limit(&depth);
+                    limit = P::Kernel::limit(&depth);
                     best = Some(depth);
                     hit = index;
                 }
@@ -226,15 +282,15 @@ impl<K: Kernel> Intersect<K> for Bvh<'_, K> {
 
     fn any(
         &self,
-        ray: &K::Ray,
-        stack: &mut Stack<K>,
+        ray: &RayOf<P>,
+        stack: &mut Stack<P::Kernel>,
         stats: &mut impl Stats,
         mut blocks: impl FnMut(u32) -> bool,
     ) -> bool {
         let mut hit = false;
-        let limit = K::reach(ray);
-        self.walk(ray, stack, stats, |index, triangle| {
-            hit = K::intersect(ray, triangle).is_some() && blocks(index);
+        let limit = P::Kernel::reach(ray);
+        self.walk(ray, stack, stats, |index, primitive| {
+            hit = primitive.intersect(ray).is_some() && blocks(index);
             (!hit).then_some(limit)
         });
         hit

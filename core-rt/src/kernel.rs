@@ -1,4 +1,4 @@
-//! Kernels: a space with its records, its box test and its triangle test.
+//! Kernels: a space with its records, its box test, its triangle test and its sphere test.
 //!
 //! Traversal, tracing and shading are written once against [`Kernel`]. A kernel states how wide its numbers are;
 //! what the others may rely on is here: a box test that never loses a hit, and an order of hits that does not
@@ -12,6 +12,7 @@ use crate::camera::Camera;
 use crate::num::{Triple, Word};
 use crate::record::Record;
 use crate::space::Space;
+use crate::sphere::Ball;
 
 /// The corners of a triangle in grid units.
 pub type Vertices = [Triple<i32>; 3];
@@ -83,15 +84,15 @@ pub struct Surface<S: Space> {
     pub point: S::Point,
     /// The geometric normal, on the side that the ray came from.
     pub normal: S::Unit,
-    /// Whether that is the front, from where the vertices run counter-clockwise.
+    /// Whether that is the front, from where the vertices run counter-clockwise; of a sphere the outside.
     pub front: bool,
-    /// The weight of the second vertex.
+    /// The weight of the second vertex; 0 on a sphere.
     pub u: S::Fraction,
-    /// The weight of the third vertex.
+    /// The weight of the third vertex; 0 on a sphere.
     pub v: S::Fraction,
 }
 
-/// A way to intersect rays with boxes and triangles, and the records for it.
+/// A way to intersect rays with boxes, triangles and spheres, and the records for it.
 pub trait Kernel: Copy + Debug + Default + Send + Sync + 'static {
     /// Its number in a blob.
     const ID: u16;
@@ -105,8 +106,11 @@ pub trait Kernel: Copy + Debug + Default + Send + Sync + 'static {
     const SPAN: i32;
     /// The largest magnitude of a direction's component, as a power of two.
     const DIRECTION_BITS: u32;
-    /// The largest material index that a triangle's record holds.
+    /// The largest material index that a triangle's or a sphere's record holds.
     const MATERIALS_MAX: u32;
+    /// The least radius of a sphere, grid units: rays that leave its surface inwards must start inside, whatever they are
+    /// moved off it and rounded by.
+    const RADIUS_MIN: i32;
 
     /// What it leaves to the scene, read from the blob's header: `()` where nothing.
     type Settings: Copy + Debug + Send + Sync;
@@ -121,11 +125,13 @@ pub trait Kernel: Copy + Debug + Default + Send + Sync + 'static {
     type Node: Record;
     /// A triangle.
     type Triangle: Record;
+    /// A sphere.
+    type Sphere: Record;
     /// A ray, prepared.
     type Ray: Copy + Debug;
     /// A lower bound of the distance at which a ray enters a box.
     type Distance: Copy + Debug + PartialOrd + Send;
-    /// Where a ray hits a triangle, exactly (as exactly as the kernel knows).
+    /// Where a ray hits a triangle or a sphere, exactly (as exactly as the kernel knows).
     type Depth: Copy + Debug;
 
     /// The settings for a scene of these triangles, where a user may ask for some; `None` where the kernel lacks what is
@@ -146,6 +152,12 @@ pub trait Kernel: Copy + Debug + Default + Send + Sync + 'static {
     fn vertices(triangle: &Self::Triangle) -> Vertices;
     /// The material of a triangle.
     fn material(triangle: &Self::Triangle) -> u32;
+    /// The record of a sphere; `None` where it does not fit ([`Ball::fits`]) or the material is too high.
+    fn sphere(ball: &Ball, material: u32) -> Option<Self::Sphere>;
+    /// The sphere of a record; of one that [`Kernel::sphere`] did not make, whatever it says.
+    fn ball(sphere: &Self::Sphere) -> Ball;
+    /// The material of a sphere.
+    fn sphere_material(sphere: &Self::Sphere) -> u32;
 
     /// The ray through a pixel; `None` where the direction is zero.
     fn primary(settings: Self::Settings, camera: &Camera<Self::Word>, x: u16, y: u16) -> Option<Self::Ray>;
@@ -182,6 +194,9 @@ pub trait Kernel: Copy + Debug + Default + Send + Sync + 'static {
     ) -> [Option<Self::Distance>; 2];
     /// Where a ray hits a triangle, if it does within its reach. Edges belong to both neighbours.
     fn intersect(ray: &Self::Ray, triangle: &Self::Triangle) -> Option<Self::Depth>;
+    /// Where a ray hits a sphere, if it does within its reach; a tangent does. `leaves` says that the ray starts on it, off it
+    /// on one side: then it hits it at most once more, and only from inside.
+    fn intersect_sphere(ray: &Self::Ray, sphere: &Self::Sphere, leaves: bool) -> Option<Self::Depth>;
     /// A limit for [`Kernel::enter`] that leaves out nothing at or before `depth`.
     fn limit(depth: &Self::Depth) -> Self::Distance;
     /// The order of two hits of one ray.
@@ -192,4 +207,6 @@ pub trait Kernel: Copy + Debug + Default + Send + Sync + 'static {
     fn heading(ray: &Self::Ray) -> <Self::Space as Space>::Unit;
     /// The point, the normal and the barycentrics of a hit. The triangle must be hit by the ray.
     fn resolve(ray: &Self::Ray, triangle: &Self::Triangle) -> Surface<Self::Space>;
+    /// The point and the normal of a hit. The sphere must be hit by the ray.
+    fn resolve_sphere(ray: &Self::Ray, sphere: &Self::Sphere) -> Surface<Self::Space>;
 }

@@ -10,7 +10,7 @@
 //! [`num`] has the integers, [`space`] the formats and operations of shading, [`colour`] linear light and pixels.
 //!
 //! # Kernels
-//! A [`kernel::Kernel`] is a space with its records, its box test and its triangle test. [`exact`] has
+//! A [`kernel::Kernel`] is a space with its records, its box test, its triangle test and its [`sphere`] test. [`exact`] has
 //! those whose every decision is exact, [`hanika`] those of the 2009 report. [`arithmetic`] is what a kernel leaves to the
 //! scene.
 //!
@@ -41,6 +41,7 @@ pub mod scene;
 pub mod section;
 mod shade;
 pub mod space;
+pub mod sphere;
 mod srgb;
 pub mod stats;
 pub mod texture;

@@ -6,10 +6,11 @@
 use crate::bvh::{Intersect, Stack};
 use crate::colour::{Albedo, Colour, WHITE, product};
 use crate::kernel::{Kernel, Surface};
+use crate::num::Triple;
 use crate::profile::{Need, Profile};
 use crate::record::Light;
 use crate::scene::Scene;
-use crate::shade::{Smooth, SpaceOf, UnitOf};
+use crate::shade::{RayOf, Smooth, SpaceOf, UnitOf};
 use crate::space::{self, Scalar, Space};
 use crate::stats::{RayKind, Stats};
 
@@ -54,15 +55,17 @@ pub(crate) fn arriving<P: Profile>(
             P::Kernel::leaving(scene.settings, from, towards, hit)
         };
         stats.ray(RayKind::Shadow);
-        let blocks = |between: u32| {
-            if P::NEEDS.has(Need::TintedShadow) {
-                tint = product(&tint, &scene.shadow(between));
-                tint == [0; 3]
-            } else {
-                true
-            }
-        };
-        if shadow.is_some_and(|ray| scene.bvh.any(&ray, stack, stats, blocks)) {
+        let blocked = shadow.is_some_and(|ray| {
+            scene.bvh.any(&ray, stack, stats, |between| {
+                if P::NEEDS.has(Need::TintedShadow) {
+                    tint = product(&tint, &passed(scene, &ray, hit, between, is_point.then_some(light.place)));
+                    tint == [0; 3]
+                } else {
+                    true
+                }
+            })
+        });
+        if blocked {
             return None;
         }
     }
@@ -77,10 +80,23 @@ pub(crate) fn arriving<P: Profile>(
     Some(Arriving { light: light_here, towards, cosine })
 }
 
-impl<P: Profile> Scene<'_, P> {
-    /// What a crossing of a primitive leaves of light.
-    fn shadow(&self, index: u32) -> Albedo {
-        let lustre = self.surface(index).and_then(|(_, material)| self.lustre(material));
-        lustre.map_or([0; 3], |lustre| lustre.shadow)
+/// What a primitive between leaves of light: its tint once for each crossing of its surface, two for a sphere but where the
+/// ray starts or the light is in it.
+fn passed<P: Profile>(
+    scene: &Scene<'_, P>,
+    ray: &RayOf<P>,
+    start: u32,
+    between: u32,
+    end: Option<Triple<i32>>,
+) -> Albedo {
+    let lustre = scene.material(between).and_then(|material| scene.lustre(material));
+    let tint = lustre.map_or([0; 3], |lustre| lustre.shadow);
+    match scene.bvh.sphere(between) {
+        Some(sphere) if tint != [0; 3] => {
+            let starts_inside = || P::Kernel::intersect_sphere(ray, sphere, true).is_some();
+            let ends_inside = || end.is_some_and(|end| P::Kernel::ball(sphere).contains(end));
+            if between == start || starts_inside() || ends_inside() { tint } else { product(&tint, &tint) }
+        }
+        _ => tint,
     }
 }

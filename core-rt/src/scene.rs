@@ -64,7 +64,7 @@ pub struct Scene<'a, P: Profile> {
     /// The view.
     pub camera: Camera<<P::Kernel as Kernel>::Word>,
     /// Geometry.
-    pub bvh: Bvh<'a, P::Kernel>,
+    pub bvh: Bvh<'a, P>,
     /// Everything else.
     pub shading: Shading<'a, P::Kernel>,
 }
@@ -135,13 +135,15 @@ fn camera<K: Kernel>(header: &Header, used: Use) -> Option<Camera<K::Word>> {
 }
 
 /// Geometry, and everything else.
-type View<'a, K> = (Bvh<'a, K>, Shading<'a, K>);
+type View<'a, P> = (Bvh<'a, P>, Shading<'a, <P as Profile>::Kernel>);
 
 /// The sections, if they fill the body exactly and agree with each other.
-fn view<'a, P: Profile>(header: &Header, sections: &'a [u8]) -> Option<View<'a, P::Kernel>> {
+fn view<'a, P: Profile>(header: &Header, sections: &'a [u8]) -> Option<View<'a, P>> {
     let counts = &header.counts;
     let smooth = header.needs.has(Need::SmoothNormals);
-    let consistent = counts.triangles > 0
+    let primitives = counts.triangles.checked_add(counts.spheres)?;
+    let consistent = primitives > 0
+        && header.needs.has(Need::Spheres) == (counts.spheres > 0)
         && counts.smooth == if smooth { counts.triangles } else { 0 }
         && smooth == (counts.normals > 0);
     if !consistent {
@@ -152,7 +154,9 @@ fn view<'a, P: Profile>(header: &Header, sections: &'a [u8]) -> Option<View<'a, 
         root: header.root,
         nodes: reader.records(counts.nodes)?,
         triangles: reader.records(counts.triangles)?,
-        ids: reader.integers(counts.triangles, header.needs.has(Need::WideIds))?,
+        // What the profile lacks the scene was found not to need, and then there are none.
+        spheres: if P::NEEDS.has(Need::Spheres) { reader.records(counts.spheres)? } else { &[] },
+        ids: reader.integers(primitives, header.needs.has(Need::WideIds))?,
     };
     let shading = Shading {
         normal_indices: reader.integers(counts.smooth.checked_mul(3)?, header.needs.has(Need::WideNormals))?,

@@ -46,10 +46,9 @@ pub(crate) fn shade<'a, P: Profile>(
     stack: &mut Stack<P::Kernel>,
     stats: &mut impl Stats,
 ) -> Option<Shaded<'a, P>> {
-    let (triangle, material) = scene.surface(hit)?;
+    let (surface, material) = scene.surface(ray, hit)?;
     let lustre = scene.lustre(material);
-    let surface = P::Kernel::resolve(ray, triangle);
-    let smooth = smooth(scene, hit, triangle, &surface);
+    let smooth = smooth(scene, hit, &surface);
     let normal = smooth.map_or(surface.normal, |smooth| smooth.normal);
     let along = lustre.map(|_| P::Kernel::heading(ray));
     let cosine = along.and_then(|along| SpaceOf::<P>::cosine(SpaceOf::<P>::negate(along), normal));
@@ -113,16 +112,13 @@ pub(crate) struct Smooth<S: Space> {
     pub(crate) lifted: S::Point,
 }
 
-/// The smooth surface at a hit; `None` for a flat triangle.
-fn smooth<P: Profile>(
-    scene: &Scene<'_, P>,
-    hit: u32,
-    triangle: &<P::Kernel as Kernel>::Triangle,
-    surface: &Surface<SpaceOf<P>>,
-) -> Option<Smooth<SpaceOf<P>>> {
+/// The smooth surface at a hit; `None` for a flat triangle and for a sphere.
+fn smooth<P: Profile>(scene: &Scene<'_, P>, hit: u32, surface: &Surface<SpaceOf<P>>) -> Option<Smooth<SpaceOf<P>>> {
     if !P::NEEDS.has(Need::SmoothNormals) {
         return None;
     }
+    // There is none for a sphere.
+    let triangle = scene.bvh.triangles.get(hit as usize)?;
     let mut normals = scene.shading.normals(hit)?;
     let mut normal = SpaceOf::<P>::interpolate(normals, surface.u, surface.v)?;
     if !SpaceOf::<P>::aligned(normal, surface.normal) {
@@ -141,14 +137,28 @@ fn smooth<P: Profile>(
 }
 
 impl<'a, P: Profile> Scene<'a, P> {
-    /// The triangle and the material of a hit; `None` for a miss.
-    #[inline]
-    pub(crate) fn surface(&self, hit: u32) -> Option<(&'a <P::Kernel as Kernel>::Triangle, &'a Material)> {
+    /// The surface and the material of a hit; `None` for a miss.
+    #[inline(always)]
+    fn surface(&self, ray: &RayOf<P>, hit: u32) -> Option<(Surface<SpaceOf<P>>, &'a Material)> {
+        let material = self.material(hit)?;
+        let surface = match self.bvh.sphere(hit) {
+            Some(sphere) => P::Kernel::resolve_sphere(ray, sphere),
+            None => P::Kernel::resolve(ray, self.bvh.triangles.get(hit as usize)?),
+        };
+        Some((surface, material))
+    }
+
+    /// The material of a hit; `None` for a miss.
+    #[inline(always)]
+    pub(crate) fn material(&self, hit: u32) -> Option<&'a Material> {
         if hit == NONE {
             return None;
         }
-        let triangle = self.bvh.triangles.get(hit as usize)?;
-        Some((triangle, self.shading.materials.get(P::Kernel::material(triangle) as usize)?))
+        let number = match self.bvh.sphere(hit) {
+            Some(sphere) => P::Kernel::sphere_material(sphere),
+            None => P::Kernel::material(self.bvh.triangles.get(hit as usize)?),
+        };
+        self.shading.materials.get(number as usize)
     }
 
     /// What a material is more than matt.

@@ -58,7 +58,7 @@ pub trait Space: Copy + Debug + Default + Send + Sync + 'static {
     /// A unit vector.
     type Unit: Copy + Debug + PartialEq;
     /// A number in [0, 1]: a barycentric coordinate.
-    type Fraction: Copy + Debug;
+    type Fraction: Copy + Debug + Default;
     /// Linear light.
     type Colour: Colour;
     /// A unit vector as it stands in the blob.

@@ -1,4 +1,4 @@
-//! Counting the work: boxes and triangles tested, rays by kind. A renderer that does not count pays nothing.
+//! Counting the work: boxes and primitives tested, rays by kind. A renderer that does not count pays nothing.
 
 /// The kinds of ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,6 +23,9 @@ pub trait Stats {
     /// A triangle test.
     #[inline(always)]
     fn triangle(&mut self) {}
+    /// A sphere test.
+    #[inline(always)]
+    fn sphere(&mut self) {}
     /// A ray.
     #[inline(always)]
     fn ray(&mut self, kind: RayKind) {
@@ -41,7 +44,7 @@ impl Stats for NoStats {}
 pub struct Counts {
     /// Ray-box tests.
     pub box_tests: u64,
-    /// Ray-triangle tests.
+    /// Ray-triangle tests, and ray-sphere tests with them.
     pub triangle_tests: u64,
     /// Camera rays.
     pub primary_rays: u64,
@@ -81,6 +84,10 @@ impl Stats for Counts {
     }
     #[inline(always)]
     fn triangle(&mut self) {
+        self.triangle_tests += 1;
+    }
+    #[inline(always)]
+    fn sphere(&mut self) {
         self.triangle_tests += 1;
     }
     #[inline(always)]

@@ -28,6 +28,7 @@ impl defmt::Format for Refusal<'_> {
             BlobError::Depth { stated } => defmt::write!(f, "its tree is deeper than {} levels", stated),
             BlobError::Bounds { node } => defmt::write!(f, "a box does not enclose what is in it, at node {}", node),
             BlobError::Triangle { index } => defmt::write!(f, "triangle record {} is inconsistent", index),
+            BlobError::Sphere { index } => defmt::write!(f, "sphere record {} is inconsistent", index),
             BlobError::Origin => defmt::write!(f, "the camera or a light is too far away"),
             BlobError::Shading => defmt::write!(f, "a material, a light or a normal is out of range"),
             BlobError::Undeclared(need) => defmt::write!(f, "it has {}, undeclared", name(need)),

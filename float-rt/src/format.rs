@@ -10,7 +10,9 @@
 //! is lost by rounding.
 
 use crate::real::Real;
-use crate::record::{Node32, Node64, NodeRecord, Triangle32, Triangle64, TriangleRecord};
+use crate::record::{
+    Node32, Node64, NodeRecord, Sphere32, Sphere64, SphereRecord, Triangle32, Triangle64, TriangleRecord,
+};
 
 /// The numbers of a kernel and what goes with them.
 pub trait Format: Real {
@@ -30,6 +32,8 @@ pub trait Format: Real {
     /// be 9 units if all errors were the largest at once; 8, or 256 units of 2^-29 of the scene, is what was measured to
     /// avoid self-intersection but on slivers. In `f64` far more can be afforded: 2^12 times the bound.
     const STAND_OFF: Self;
+    /// See [`Kernel::RADIUS_MIN`](core_rt::kernel::Kernel::RADIUS_MIN): at least twice [`Format::STAND_OFF`].
+    const RADIUS_MIN: i32;
     /// Where the segment from a surface (0) to a light (1) ends: before 1 by more than the error of a `t`, so that what
     /// the light lies on does not hide it.
     const SEGMENT_END: Self;
@@ -38,6 +42,8 @@ pub trait Format: Real {
     type Node: NodeRecord<Self>;
     /// A triangle's record.
     type Triangle: TriangleRecord<Self>;
+    /// A sphere's record.
+    type Sphere: SphereRecord<Self>;
 }
 
 impl Format for f32 {
@@ -46,10 +52,12 @@ impl Format for f32 {
     const GRID_BITS: u32 = 24;
     const DIRECTION_BITS: u32 = 24;
     const STAND_OFF: Self = 8.0;
+    const RADIUS_MIN: i32 = 16;
     const SEGMENT_END: Self = 1.0 - 1.0 / (1 << 12) as Self;
 
     type Node = Node32;
     type Triangle = Triangle32;
+    type Sphere = Sphere32;
 }
 
 impl Format for f64 {
@@ -58,8 +66,10 @@ impl Format for f64 {
     const GRID_BITS: u32 = 29;
     const DIRECTION_BITS: u32 = 31;
     const STAND_OFF: Self = 1.0 / (1 << 9) as Self;
+    const RADIUS_MIN: i32 = 2;
     const SEGMENT_END: Self = 1.0 - 1.0 / (1u64 << 40) as Self;
 
     type Node = Node64;
     type Triangle = Triangle64;
+    type Sphere = Sphere64;
 }

@@ -7,12 +7,14 @@ use core_rt::arithmetic::{Arithmetic, Knobs};
 use core_rt::camera::Camera;
 use core_rt::kernel::{Bounds, Kernel, NONE, Surface, Vertices};
 use core_rt::num::{Triple, Word};
+use core_rt::sphere::Ball;
 
 use crate::boxes;
 use crate::format::Format;
 use crate::ray::Ray;
-use crate::record::{NodeRecord, TriangleRecord};
+use crate::record::{NodeRecord, SphereRecord, TriangleRecord};
 use crate::space::FloatSpace;
+use crate::sphere;
 use crate::triangle;
 use crate::vector::{add, cross, dot, normalise, scale, sub};
 
@@ -32,12 +34,14 @@ impl<F: Format> Kernel for Float<F> {
     const SPAN: i32 = (1 << F::GRID_BITS) - MARGIN;
     const DIRECTION_BITS: u32 = F::DIRECTION_BITS;
     const MATERIALS_MAX: u32 = triangle::MATERIALS_MAX;
+    const RADIUS_MIN: i32 = F::RADIUS_MIN;
 
     type Settings = ();
     type Space = FloatSpace<F>;
     type Word = i64;
     type Node = F::Node;
     type Triangle = F::Triangle;
+    type Sphere = F::Sphere;
     type Ray = Ray<F>;
     type Distance = F;
     type Depth = F;
@@ -74,6 +78,19 @@ impl<F: Format> Kernel for Float<F> {
     #[inline]
     fn material(triangle: &F::Triangle) -> u32 {
         triangle.material()
+    }
+
+    fn sphere(ball: &Ball, material: u32) -> Option<F::Sphere> {
+        if ball.fits::<Self>() { sphere::pack::<F>(ball, material) } else { None }
+    }
+
+    fn ball(sphere: &F::Sphere) -> Ball {
+        sphere::ball::<F>(sphere)
+    }
+
+    #[inline]
+    fn sphere_material(sphere: &F::Sphere) -> u32 {
+        sphere.material()
     }
 
     #[inline]
@@ -125,6 +142,11 @@ impl<F: Format> Kernel for Float<F> {
         triangle::intersect(ray, triangle)
     }
 
+    #[inline]
+    fn intersect_sphere(ray: &Ray<F>, sphere: &F::Sphere, leaves: bool) -> Option<F> {
+        sphere::intersect::<F>(ray, sphere, leaves)
+    }
+
     #[inline(always)]
     fn limit(depth: &F) -> F {
         boxes::limit(*depth)
@@ -156,6 +178,10 @@ impl<F: Format> Kernel for Float<F> {
             None => (Self::heading(ray).map(|c| -c), true),
         };
         Surface { point: add(v0, add(scale(e1, hit.u), scale(e2, hit.v))), normal, front, u: hit.u, v: hit.v }
+    }
+
+    fn resolve_sphere(ray: &Ray<F>, sphere: &F::Sphere) -> Surface<FloatSpace<F>> {
+        sphere::resolve::<F>(ray, sphere)
     }
 }
 

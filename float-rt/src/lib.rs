@@ -22,6 +22,7 @@ mod ray;
 mod real;
 mod record;
 mod space;
+mod sphere;
 mod triangle;
 mod vector;
 
@@ -30,7 +31,9 @@ pub use format::Format;
 pub use kernel::Float;
 pub use ray::Ray;
 pub use real::Real;
-pub use record::{Node32, Node64, NodeRecord, Triangle32, Triangle64, TriangleRecord};
+pub use record::{
+    Node32, Node64, NodeRecord, Sphere32, Sphere64, SphereRecord, Triangle32, Triangle64, TriangleRecord,
+};
 pub use space::FloatSpace;
 
 /// Single precision on a 24-bit grid: what rounding coordinates to `f32` would keep of them.

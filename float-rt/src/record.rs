@@ -29,6 +29,18 @@ pub trait TriangleRecord<F>: Record {
     fn material(&self) -> u32;
 }
 
+/// A sphere's record.
+pub trait SphereRecord<F>: Record {
+    /// The record of a centre, a radius and a material.
+    fn new(centre: Triple<F>, radius: F, material: u32) -> Self;
+    /// The centre.
+    fn centre(&self) -> &Triple<F>;
+    /// The radius.
+    fn radius(&self) -> F;
+    /// The material.
+    fn material(&self) -> u32;
+}
+
 /// Two children in `f32`, in 56 bytes.
 #[derive(Clone, Copy, Debug, PartialEq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(C)]
@@ -62,8 +74,27 @@ pub struct Triangle64 {
     material: u64,
 }
 
+/// A sphere in `f32`, in 20 bytes.
+#[derive(Clone, Copy, Debug, PartialEq, FromBytes, IntoBytes, Immutable, KnownLayout)]
+#[repr(C)]
+pub struct Sphere32 {
+    centre: Triple<f32>,
+    radius: f32,
+    material: u32,
+}
+
+/// A sphere in `f64`, in 40 bytes.
+#[derive(Clone, Copy, Debug, PartialEq, FromBytes, IntoBytes, Immutable, KnownLayout)]
+#[repr(C)]
+pub struct Sphere64 {
+    centre: Triple<f64>,
+    radius: f64,
+    /// As wide as a number, so that there is no padding.
+    material: u64,
+}
+
 macro_rules! records {
-    ($float:ty, $node:ident, $triangle:ident) => {
+    ($float:ty, $node:ident, $triangle:ident, $sphere:ident) => {
         impl NodeRecord<$float> for $node {
             #[inline]
             fn new(planes: Planes<$float>, children: [u32; 2]) -> Self {
@@ -76,6 +107,25 @@ macro_rules! records {
             #[inline(always)]
             fn children(&self) -> [u32; 2] {
                 self.children
+            }
+        }
+
+        impl SphereRecord<$float> for $sphere {
+            #[inline]
+            fn new(centre: Triple<$float>, radius: $float, material: u32) -> Self {
+                Self { centre, radius, material: material.into() }
+            }
+            #[inline(always)]
+            fn centre(&self) -> &Triple<$float> {
+                &self.centre
+            }
+            #[inline(always)]
+            fn radius(&self) -> $float {
+                self.radius
+            }
+            #[inline(always)]
+            fn material(&self) -> u32 {
+                self.material as u32
             }
         }
 
@@ -95,5 +145,5 @@ macro_rules! records {
         }
     };
 }
-records!(f32, Node32, Triangle32);
-records!(f64, Node64, Triangle64);
+records!(f32, Node32, Triangle32, Sphere32);
+records!(f64, Node64, Triangle64, Sphere64);

@@ -22,6 +22,8 @@ pub trait Engine: Sync {
     fn id(&self) -> u16;
     /// The bits of its grid.
     fn grid_bits(&self) -> u32;
+    /// The least radius of a sphere, grid units.
+    fn radius_min(&self) -> i32;
     /// A model as a blob.
     ///
     /// # Errors
@@ -51,6 +53,8 @@ pub struct Sizes {
     pub nodes: u64,
     /// Triangles with their vertices.
     pub triangles: u64,
+    /// Spheres.
+    pub spheres: u64,
     /// File-order ids.
     pub ids: u64,
     /// Normals and their indices.
@@ -79,6 +83,10 @@ impl<K: Measure> Engine for Of<K> {
         K::GRID_BITS
     }
 
+    fn radius_min(&self) -> i32 {
+        K::RADIUS_MIN
+    }
+
     fn prepare(&self, model: &Model, options: &Options) -> Result<Prepared, PrepareError> {
         prepare::prepare::<K>(model, options)
     }
@@ -88,6 +96,7 @@ impl<K: Measure> Engine for Of<K> {
         let sizes = Sizes {
             nodes: size_of_val(scene.bvh.nodes) as u64,
             triangles: size_of_val(scene.bvh.triangles) as u64,
+            spheres: size_of_val(scene.bvh.spheres) as u64,
             ids: scene.bvh.ids.size() as u64,
             normals: (size_of_val(scene.shading.normals) + scene.shading.normal_indices.size()) as u64,
             paint: (scene.shading.paint.uv_indices.size()

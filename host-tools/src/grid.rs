@@ -5,10 +5,11 @@
 
 use core_rt::kernel::{Bounds, Kernel, Vertices};
 use core_rt::num::{bits, sub};
+use core_rt::sphere::Ball;
 use glam::DVec3;
 use thiserror::Error;
 
-use crate::model::{LightKind, Model, Triangle};
+use crate::model::{LightKind, Model, Sphere, Triangle};
 use crate::plane::Plane;
 
 /// Why a model has no grid.
@@ -43,8 +44,7 @@ impl Grid {
     /// With k = origin * scale, an axis asks for `g s - k` of the geometry in `[m, M]`, and for `|o s - g s|` of every
     /// origin at most the kernel's span.
     pub fn fit<K: Kernel>(model: &Model) -> Result<Self, GridError> {
-        let vertices = model.triangles.iter().flat_map(|t| t.vertices).map(|v| model.positions[v as usize]);
-        let geometry = Extent::of(vertices).ok_or(GridError::NoExtent)?;
+        let geometry = Extent::of(ends(model)).ok_or(GridError::NoExtent)?;
         let lights = model.lights.iter().filter_map(|light| match light.kind {
             LightKind::Point(position) => Some(position),
             LightKind::Directional(_) => None,
@@ -79,6 +79,8 @@ impl Grid {
         // Placing rounds, but keeps order: if the ends are in range, all is.
         let whole = Bounds { low: [K::MARGIN; 3], high: [(1 << K::GRID_BITS) - 1 - K::MARGIN; 3] };
         let placed = Bounds { low: grid.place(geometry.low), high: grid.place(geometry.high) };
+        // Of a sphere centre and radius are rounded, half a unit each: what was left over has room for that.
+        let placed = model.spheres.iter().fold(placed, |all, sphere| all.union(&grid.ball(sphere).bounds()));
         let spanned = |origin| placed.spanned_from(grid.place(origin), K::SPAN);
         let fits = whole.contains(&placed) && spanned(origins.low) && spanned(origins.high);
         if fits { Ok(grid) } else { Err(GridError::TooFar) }
@@ -90,13 +92,18 @@ impl Grid {
         ((point - self.origin) * self.scale).to_array().map(|c| (c + 0.5).floor() as i32)
     }
 
-    /// The bits that tell a model's vertices apart along their longest side. A camera or a light outside takes some of a
+    /// The sphere with the nearest centre and the nearest radius, halves up.
+    #[must_use]
+    pub fn ball(&self, sphere: &Sphere) -> Ball {
+        Ball { centre: self.place(sphere.centre), radius: (sphere.radius * self.scale + 0.5).floor() as i32 }
+    }
+
+    /// The bits that tell a model's points apart along their longest side. A camera or a light outside takes some of a
     /// kernel's, and the farther it is, the more.
     #[must_use]
     pub fn bits(&self, model: &Model) -> u32 {
-        let vertices = model.triangles.iter().flat_map(|t| t.vertices).map(|v| model.positions[v as usize]);
         let steps =
-            Extent::of(vertices).map_or([0; 3], |geometry| sub(self.place(geometry.high), self.place(geometry.low)));
+            Extent::of(ends(model)).map_or([0; 3], |geometry| sub(self.place(geometry.high), self.place(geometry.low)));
         bits(steps)
     }
 
@@ -125,6 +132,12 @@ impl Snapped<'_> {
     pub fn iter(&self) -> impl Iterator<Item = Vertices> {
         (0..self.triangles.len() as u32).map(|id| self.corners(id))
     }
+}
+
+/// Vertices, and the corners of the boxes of spheres.
+fn ends(model: &Model) -> impl Iterator<Item = DVec3> {
+    let vertices = model.triangles.iter().flat_map(|t| t.vertices).map(|v| model.positions[v as usize]);
+    vertices.chain(model.spheres.iter().flat_map(|s| [s.centre - s.radius, s.centre + s.radius]))
 }
 
 struct Extent {

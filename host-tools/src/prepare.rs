@@ -8,17 +8,16 @@ mod layout;
 mod loss;
 mod lustre;
 mod paint;
-mod unsupported;
 
 pub use layout::Blob;
 pub use loss::{Keeper, Loss, losses};
 pub use paint::unplaced;
-pub use unsupported::Unsupported;
 
 use core_rt::arithmetic::Knobs;
 use core_rt::bvh::Child;
 use core_rt::kernel::{Bounds, Kernel};
 use core_rt::record::Material;
+use core_rt::sphere::Ball;
 use thiserror::Error;
 
 use crate::grid::{Grid, GridError, Snapped};
@@ -40,20 +39,20 @@ pub struct Options {
 /// Why a scene cannot be prepared for a kernel.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 pub enum PrepareError {
-    /// No kernel has what the scene is made of.
-    #[error(transparent)]
-    Unsupported(#[from] Unsupported),
     /// No grid.
     #[error(transparent)]
     Grid(#[from] GridError),
     /// Nothing is left.
     #[error(
-        "none of {triangles} triangles has an area on the {bits}-bit grid of {kernel}, so nothing is left to render; {}",
+        "none of {} on the {bits}-bit grid of {kernel}, so nothing is left to render; {}",
+        what_there_was(*.triangles, *.spheres),
         advice(*.keeper)
     )]
     AllDegenerate {
-        /// How many there were.
+        /// How many triangles there were.
         triangles: usize,
+        /// How many spheres there were.
+        spheres: usize,
         /// The grid's bits.
         bits: u32,
         /// The kernel's name.
@@ -61,8 +60,8 @@ pub enum PrepareError {
         /// A kernel that keeps some.
         keeper: Option<Keeper>,
     },
-    /// More triangles than a tree can refer to.
-    #[error("the scene has {found} triangles, and a blob holds at most {most}")]
+    /// More triangles and spheres than a tree can refer to.
+    #[error("the scene has {found} triangles and spheres, and a blob holds at most {most}")]
     TooManyTriangles {
         /// How many there are.
         found: usize,
@@ -95,26 +94,38 @@ pub enum PrepareError {
     },
 }
 
+/// What is too small for a grid.
+fn what_there_was(triangles: usize, spheres: usize) -> String {
+    match (triangles, spheres) {
+        (_, 0) => format!("{triangles} triangles has an area"),
+        (0, _) => format!("{spheres} spheres has a size"),
+        _ => format!("{triangles} triangles and {spheres} spheres has a size"),
+    }
+}
+
 /// What to do where a kernel's grid keeps no triangle.
 fn advice(keeper: Option<Keeper>) -> String {
     let closer = "bring the camera and the lights closer to them";
     match keeper {
         None => format!("check the vertices, or {closer}"),
-        Some(Keeper { kernel, triangles }) => format!("{kernel} keeps {triangles} of them, or {closer}"),
+        Some(Keeper { kernel, kept }) => format!("{kernel} keeps {kept} of them, or {closer}"),
     }
 }
 
-/// Triangles that have no area on the grid, by cause (the columns of the 2009 report's Table 2 are their sum).
+/// What has no size on the grid: triangles without an area, by cause (the columns of the 2009 report's Table 2 are their sum),
+/// and spheres.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Degenerates {
     /// Two corners are one.
     pub zero_edge: u32,
     /// Three corners are in one line.
     pub zero_area: u32,
+    /// Spheres whose radius is less than [`Kernel::RADIUS_MIN`].
+    pub spheres: u32,
 }
 
 impl Degenerates {
-    /// All of them.
+    /// All triangles of them.
     #[must_use]
     pub const fn total(self) -> u32 {
         self.zero_edge + self.zero_area
@@ -137,9 +148,9 @@ pub struct Prepared {
 /// # Errors
 /// Where the kernel cannot hold the scene.
 pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, PrepareError> {
-    unsupported::supported(model)?;
-    if model.triangles.len() >= Child::INDEX_END as usize {
-        return Err(PrepareError::TooManyTriangles { found: model.triangles.len(), most: Child::INDEX_END - 1 });
+    let primitives = model.triangles.len() + model.spheres.len();
+    if primitives >= Child::INDEX_END as usize {
+        return Err(PrepareError::TooManyTriangles { found: primitives, most: Child::INDEX_END - 1 });
     }
     let (used, materials) = used_materials(model);
     if used.len() > K::MATERIALS_MAX as usize + 1 {
@@ -147,18 +158,25 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
     }
     let grid = Grid::fit::<K>(model)?;
     let snapped = grid.snap(model);
-    let (ids, degenerates) = with_area(&snapped);
-    if ids.is_empty() {
+    let (ids, mut degenerates) = with_area(&snapped);
+    let balls = with_room::<K>(model, &grid, &mut degenerates);
+    if ids.is_empty() && balls.is_empty() {
         return Err(PrepareError::AllDegenerate {
             triangles: model.triangles.len(),
+            spheres: model.spheres.len(),
             bits: K::GRID_BITS,
             kernel: K::NAME,
             keeper: loss::keeps_some(K::GRID_BITS, model),
         });
     }
-    let Tree { root, nodes, order, depth } =
-        tree::build(ids.iter().map(|&id| Bounds::of(&snapped.corners(id))), options.tree);
-    let ids: Vec<u32> = order.into_iter().map(|place| ids[place as usize]).collect();
+    let Tree { root, nodes, order, depth } = tree::build_mixed(
+        ids.iter().map(|&id| Bounds::of(&snapped.corners(id))),
+        balls.iter().map(|(_, ball)| ball.bounds()),
+        options.tree,
+    );
+    let (of_triangles, of_spheres) = order.split_at(ids.len());
+    let ids: Vec<u32> = of_triangles.iter().map(|&place| ids[place as usize]).collect();
+    let balls: Vec<(u32, Ball)> = of_spheres.iter().map(|&place| balls[place as usize - ids.len()]).collect();
     let refused = PrepareError::Knobs { ranges: K::KNOBS, kernel: K::NAME };
     let arithmetic = K::settle(&options.knobs, ids.iter().map(|&id| snapped.corners(id))).ok_or(refused)?;
     let settings = K::settings(&arithmetic).ok_or(refused)?;
@@ -167,6 +185,12 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
         let material = materials[model.triangles[id as usize].material as usize];
         K::triangle(settings, &snapped.corners(id), material).expect("a triangle that the grid and the kernel hold")
     };
+    // What does not fit is not among `balls`.
+    let sphere = |&(number, ball): &(u32, Ball)| {
+        let material = materials[model.spheres[number as usize].material as usize];
+        K::sphere(&ball, material).expect("a sphere that the grid and the kernel hold")
+    };
+    let sphere_ids: Vec<u32> = balls.iter().map(|&(number, _)| model.triangles.len() as u32 + number).collect();
     let (mut lustres, mut checkers) = (Vec::new(), Vec::new());
     let textured = used.clone();
     let used: Vec<Material> = used
@@ -186,7 +210,9 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
             arithmetic,
             nodes: nodes.iter().map(|node| K::node(node.boxes, node.children)),
             triangles: ids.iter().map(triangle),
+            spheres: balls.iter().map(sphere),
             ids: &ids,
+            sphere_ids: &sphere_ids,
             materials: &used,
             lustres: &lustres,
             checkers: &checkers,
@@ -212,15 +238,16 @@ fn shared<T: PartialEq>(records: &mut Vec<T>, record: Option<T>) -> u16 {
     })
 }
 
-/// The materials that triangles refer to, and the new number of each old one.
+/// The materials that triangles and spheres refer to, and the new number of each old one.
 fn used_materials(model: &Model) -> (Vec<u32>, Vec<u32>) {
     let mut numbers = vec![u32::MAX; model.materials.len()];
     let mut used = Vec::new();
-    for triangle in &model.triangles {
-        let number = &mut numbers[triangle.material as usize];
+    let triangles = model.triangles.iter().map(|triangle| triangle.material);
+    for material in triangles.chain(model.spheres.iter().map(|sphere| sphere.material)) {
+        let number = &mut numbers[material as usize];
         if *number == u32::MAX {
             *number = used.len() as u32;
-            used.push(triangle.material);
+            used.push(material);
         }
     }
     (used, numbers)
@@ -241,4 +268,12 @@ fn with_area(snapped: &Snapped<'_>) -> (Vec<u32>, Degenerates) {
         }
     }
     (ids, degenerates)
+}
+
+/// The spheres that a kernel can hold, by their number in the file; the others are counted.
+fn with_room<K: Kernel>(model: &Model, grid: &Grid, degenerates: &mut Degenerates) -> Vec<(u32, Ball)> {
+    let all = (0..).zip(model.spheres.iter().map(|sphere| grid.ball(sphere)));
+    let kept: Vec<(u32, Ball)> = all.filter(|(_, ball)| ball.fits::<K>()).collect();
+    degenerates.spheres = (model.spheres.len() - kept.len()) as u32;
+    kept
 }

@@ -59,8 +59,8 @@ impl<'a, K: Measure> Tracer<'a, K> {
     #[must_use]
     pub fn new(scene: Scene<'a, Full<K>>) -> Option<Self> {
         let grid = source_grid(&scene.header.source)?;
-        let whole = scene.bvh.triangles.iter().map(|t| Bounds::of(&K::vertices(t))).reduce(|a, b| a.union(&b))?;
-        // Vertices keep the margin from the ends of the grid, and the span is the grid less one margin.
+        let whole = scene.bvh.bounds().reduce(|a, b| a.union(&b))?;
+        // Primitives keep the margin from the ends of the grid, and the span is the grid less one margin.
         let origins = Bounds { low: whole.high.map(|c| c - K::SPAN), high: whole.low.map(|c| c + K::SPAN) };
         Some(Self { scene, reach: Reach::new(grid, &origins) })
     }
@@ -77,7 +77,10 @@ impl<K: Measure> Trace for Tracer<'_, K> {
         let mut stack = heapless::Vec::<_, MAX_DEPTH>::new();
         let bvh = &self.scene.bvh;
         let index = bvh.closest(&ray, &mut stack, &mut NoStats);
-        let hit = K::measure(&ray, bvh.triangles.get(index as usize)?)?;
+        let hit = match bvh.sphere(index) {
+            Some(sphere) => K::measure_sphere(&ray, sphere)?,
+            None => K::measure(&ray, bvh.triangles.get(index as usize)?)?,
+        };
         // How often the direction goes into the kernel's, which is exactly 1 where they are the same.
         let share = hit.direction.dot(direction) / direction.length_squared();
         let steps = libm::ldexp(hit.t * share / self.reach.grid.scale, K::DIRECTION_BITS as i32);

@@ -13,9 +13,9 @@ use core_rt::scene::MAX_DEPTH;
 /// How a tree is built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TreeOptions {
-    /// A leaf has at most so many triangles, 1 to [`Child::COUNT_MAX`].
+    /// A leaf has at most so many primitives, 1 to [`Child::COUNT_MAX`].
     pub leaf_max: u32,
-    /// Nodes of at most `leaf_max` triangles become leaves without asking the SAH: the 2009 report's "leaf threshold".
+    /// Nodes of at most `leaf_max` primitives of one kind become leaves without asking the SAH: the 2009 report's "leaf threshold".
     pub leaf_always: bool,
     /// What a triangle test costs, in box tests.
     pub triangle_cost: f64,
@@ -65,17 +65,18 @@ pub struct Tree {
     pub root: u32,
     /// Nodes in preorder.
     pub nodes: Vec<Node>,
-    /// Which triangle stands at each place.
+    /// Which primitive stands at each place, triangles first.
     pub order: Vec<u32>,
     /// Levels of nodes.
     pub depth: u8,
 }
 
-/// A triangle while the tree is built.
+/// A triangle or a sphere while the tree is built.
 #[derive(Clone, Copy, Debug)]
 struct Item {
     bounds: Bounds,
     index: u32,
+    is_sphere: bool,
 }
 
 impl Item {
@@ -85,14 +86,34 @@ impl Item {
     }
 }
 
-/// Builds a tree over boxes, at least one and fewer than [`Child::INDEX_END`].
+/// Builds a tree over the boxes of triangles, at least one and fewer than [`Child::INDEX_END`].
 #[must_use]
 pub fn build(boxes: impl Iterator<Item = Bounds>, options: TreeOptions) -> Tree {
-    let mut items: Vec<Item> = (0..).zip(boxes).map(|(index, bounds)| Item { bounds, index }).collect();
+    build_mixed(boxes, std::iter::empty(), options)
+}
+
+/// Builds a tree over the boxes of triangles and of spheres, at least one and fewer than [`Child::INDEX_END`] in all. A
+/// leaf holds one kind; spheres are numbered, and placed, after all triangles.
+#[must_use]
+pub fn build_mixed(
+    triangles: impl Iterator<Item = Bounds>,
+    spheres: impl Iterator<Item = Bounds>,
+    options: TreeOptions,
+) -> Tree {
+    let kinds = triangles.map(|bounds| (bounds, false)).chain(spheres.map(|bounds| (bounds, true)));
+    let item = |(index, (bounds, is_sphere))| Item { bounds, index, is_sphere };
+    let mut items: Vec<Item> = (0..).zip(kinds).map(item).collect();
     let mut nodes = Vec::new();
-    let root = subtree(&mut items, 0, 0, options, &mut nodes);
-    let order = items.into_iter().map(|item| item.index).collect();
+    let triangles = items.iter().filter(|item| !item.is_sphere).count() as u32;
+    let root = subtree(&mut items, [0, triangles], 0, options, &mut nodes);
+    let (spheres, triangles): (Vec<Item>, Vec<Item>) = items.into_iter().partition(|item| item.is_sphere);
+    let order = triangles.into_iter().chain(spheres).map(|item| item.index).collect();
     Tree { root: root.packed, nodes, order, depth: root.levels }
+}
+
+/// How many spheres there are.
+fn spheres(items: &[Item]) -> u32 {
+    items.iter().filter(|item| item.is_sphere).count() as u32
 }
 
 /// Below this, threads cost more than they bring.
@@ -106,18 +127,20 @@ struct Subtree {
     levels: u8,
 }
 
-/// Appends the nodes of a subtree over items that stand from `first` on. Recursion is at most [`MAX_DEPTH`] deep.
-fn subtree(items: &mut [Item], first: u32, level: u32, options: TreeOptions, nodes: &mut Vec<Node>) -> Subtree {
+/// Appends the nodes of a subtree over items whose triangles and spheres stand from the places `first` on. Recursion is at most [`MAX_DEPTH`] deep.
+fn subtree(items: &mut [Item], first: [u32; 2], level: u32, options: TreeOptions, nodes: &mut Vec<Node>) -> Subtree {
     let bounds = union(items.iter().map(|item| item.bounds));
     let Some(middle) = split(items, &bounds, level, options) else {
-        let leaf = Child::Leaf { first, count: items.len() as u32 };
+        let kind = usize::from(items.iter().any(|item| item.is_sphere));
+        let leaf = Child::Leaf { first: first[kind], count: items.len() as u32 };
         let bounds = options.leaf_growth.map_or(bounds, |growth| growth.of(bounds));
         return Subtree { packed: leaf.pack(), bounds, levels: 0 };
     };
     let index = nodes.len();
     nodes.push(Node { boxes: [bounds; 2], children: [0; 2] });
     let (left, right) = items.split_at_mut(middle);
-    let right_first = first + middle as u32;
+    let left_spheres = spheres(left);
+    let right_first = [first[0] + middle as u32 - left_spheres, first[1] + left_spheres];
     let [a, b] = if left.len().min(right.len()) > PARALLEL {
         let mut right_nodes = Vec::new();
         let (a, b) = rayon::join(
@@ -149,18 +172,27 @@ fn append(subtree: Subtree, own: Vec<Node>, nodes: &mut Vec<Node>) -> Subtree {
 fn split(items: &mut [Item], bounds: &Bounds, level: u32, options: TreeOptions) -> Option<usize> {
     let count = items.len() as u32;
     let leaf_max = options.leaf_max.clamp(1, Child::COUNT_MAX);
-    let fits_leaf = count <= leaf_max;
+    let spheres = spheres(items);
+    let is_mixed = spheres > 0 && spheres < count;
+    let fits_leaf = count <= leaf_max && !is_mixed;
     if count == 1 || (fits_leaf && options.leaf_always) {
         return None;
     }
-    // Splitting in the middle from here on ends within the levels that are left.
-    let must_halve = count.div_ceil(leaf_max).next_power_of_two().ilog2() + 1 >= MAX_DEPTH as u32 - level;
-    let best = if must_halve { None } else { split::best(items, bounds, options) };
+    // What would be a leaf but for its kinds is split by them.
+    let by_kind = is_mixed && count <= leaf_max;
+    // Splitting in the middle from here on ends within the levels that are left, one of which may go to kinds.
+    let levels = count.div_ceil(leaf_max).next_power_of_two().ilog2() + 1 + u32::from(is_mixed);
+    let must_halve = levels >= MAX_DEPTH as u32 - level;
+    let best = if must_halve || (by_kind && options.leaf_always) { None } else { split::best(items, bounds, options) };
     match best {
-        Some(best) if !fits_leaf || best.cost < f64::from(count) * options.triangle_cost => {
+        Some(best) if !(fits_leaf || by_kind) || best.cost < f64::from(count) * options.triangle_cost => {
             Some(split::partition(items, &best))
         }
         _ if fits_leaf => None,
+        _ if by_kind => {
+            items.sort_by_key(|item| item.is_sphere);
+            Some((count - spheres) as usize)
+        }
         // No split separates them, or there is no time left for one.
         _ => Some(items.len() / 2),
     }

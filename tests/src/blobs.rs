@@ -25,7 +25,9 @@ pub struct Draft<K: Kernel> {
     pub nodes: Vec<K::Node>,
     /// Triangles in the order of the leaves.
     pub triangles: Vec<K::Triangle>,
-    /// The file's number of each triangle.
+    /// Spheres in the order of the leaves.
+    pub spheres: Vec<K::Sphere>,
+    /// The file's number of each triangle, then of each sphere.
     pub ids: Vec<u32>,
     /// Three a triangle, or none.
     pub normal_indices: Vec<u32>,
@@ -75,7 +77,8 @@ impl<K: Kernel> Draft<K> {
             header,
             nodes: take(&mut rest, counts.nodes)?,
             triangles: take(&mut rest, counts.triangles)?,
-            ids: take_integers(&mut rest, counts.triangles, needs.has(Need::WideIds))?,
+            spheres: take(&mut rest, counts.spheres)?,
+            ids: take_integers(&mut rest, counts.triangles.checked_add(counts.spheres)?, needs.has(Need::WideIds))?,
             normal_indices: take_integers(&mut rest, counts.smooth.checked_mul(3)?, needs.has(Need::WideNormals))?,
             normals: take(&mut rest, counts.normals)?,
             uv_indices: take_integers(&mut rest, corners(Need::Texture)?, wide_uvs)?,
@@ -100,6 +103,7 @@ impl<K: Kernel> Draft<K> {
         put(&mut bytes, &header);
         put(&mut bytes, &self.nodes);
         put(&mut bytes, &self.triangles);
+        put(&mut bytes, &self.spheres);
         put_integers(&mut bytes, &self.ids, self.header.needs.has(Need::WideIds));
         put_integers(&mut bytes, &self.normal_indices, self.header.needs.has(Need::WideNormals));
         put(&mut bytes, &self.normals);
@@ -170,21 +174,36 @@ pub fn repaired(bytes: &[u8], kernel: u16) -> Blob {
 /// Where it cannot be prepared.
 #[must_use]
 pub fn sample<K: Kernel>(smooth: bool) -> Blob {
+    prepared_sample::<K>(smooth, "")
+}
+
+/// [`sample`], smooth, with three spheres among its triangles, one of which reaches all ends of the scene.
+///
+/// # Panics
+/// Where it cannot be prepared.
+#[must_use]
+pub fn sample_with_spheres<K: Kernel>() -> Blob {
+    const SPHERES: &str = "[[sphere]]\ncentre = [2, 2, 2]\nradius = 2\nmaterial = 'floor'\n\
+                           [[sphere]]\ncentre = [1, 1, 3]\nradius = 0.5\nmaterial = 'lamp'\n\
+                           [[sphere]]\ncentre = [3, 1, 3]\nradius = 0.5\nmaterial = 'floor'\n";
+    prepared_sample::<K>(true, SPHERES)
+}
+
+fn prepared_sample<K: Kernel>(smooth: bool, spheres: &str) -> Blob {
     const VERTICES: &str = "mtllib s.mtl\nv 0 0 0\nv 4 0 0\nv 4 0 4\nv 0 0 4\nv 1 1 1\nv 3 1 2\nv 2 3 2\nv 2 1 3\n\
                             vn 0 1 0\nvn 1 1 0\nvn 0 1 1\n";
+    const SCENE: &str = "model = 's.obj'\n[camera]\nposition = [1, 3, 8]\nlook_at = [2, 1, 2]\n[[light]]\nposition = [3, 5, 3]\n\
+         [[light]]\nkind = 'directional'\ndirection = [-1, -3, -1]\ncolour = [0.3, 0.3, 0.2]\n\
+         [background]\ncolour = [0.1, 0.2, 0.4]\n[render]\nsize = [12, 9]\nambient = [0.1, 0.1, 0.1]\n";
     const FLAT: &str = "usemtl floor\nf 1 4 3 2\nusemtl lamp\nf 5 7 6\nf 6 7 8\nf 8 7 5\n";
     const SMOOTH: &str =
         "usemtl floor\nf 1//1 4//1 3//1 2//1\nusemtl lamp\nf 5//2 7//1 6//3\nf 6//3 7//1 8//2\nf 8 7 5\n";
     let obj = [VERTICES, if smooth { SMOOTH } else { FLAT }].concat();
+    let scene = [SCENE, spheres].concat();
     let files: [(&str, &[u8]); 3] = [
         ("s.obj", obj.as_bytes()),
         ("s.mtl", b"newmtl floor\nKd 0.5 0.6 0.7\nnewmtl lamp\nKd 0.9 0.2 0.1\nKe 0.25 0 0\n"),
-        (
-            "s.toml",
-            b"model = 's.obj'\n[camera]\nposition = [1, 3, 8]\nlook_at = [2, 1, 2]\n[[light]]\nposition = [3, 5, 3]\n\
-              [[light]]\nkind = 'directional'\ndirection = [-1, -3, -1]\ncolour = [0.3, 0.3, 0.2]\n\
-              [background]\ncolour = [0.1, 0.2, 0.4]\n[render]\nsize = [12, 9]\nambient = [0.1, 0.1, 0.1]\n",
-        ),
+        ("s.toml", scene.as_bytes()),
     ];
     let model = load_from(&Embedded(&files), "s.toml").expect("a good scene").model;
     let tree = TreeOptions { leaf_max: 1, leaf_always: true, ..TreeOptions::default() };
@@ -194,7 +213,7 @@ pub fn sample<K: Kernel>(smooth: bool) -> Blob {
 /// Renders the first tile of an accepted scene and the last, of at most 8x8 pixels, and returns the pixels of both.
 ///
 /// # Panics
-/// Where the renderer does; where a ray looks at a node or a triangle twice.
+/// Where the renderer does; where a ray looks at a node or a primitive twice.
 pub fn corners<K: Kernel>(scene: &Scene<'_, Full<K>>) -> Vec<Rgb888> {
     let [width, height] = scene.header.size;
     let side = |picture: u16| picture.min(8);
@@ -211,9 +230,10 @@ pub fn corners<K: Kernel>(scene: &Scene<'_, Full<K>>) -> Vec<Rgb888> {
         let pixels =
             render_tile(scene, tile, &mut workspace, &mut counts).expect("the workspace is the largest there is");
         seen.extend(rgb888(scene.header.format, pixels));
-        let (nodes, triangles) = (scene.bvh.nodes.len() as u64, scene.bvh.triangles.len() as u64);
+        let nodes = scene.bvh.nodes.len() as u64;
+        let primitives = (scene.bvh.triangles.len() + scene.bvh.spheres.len()) as u64;
         assert!(counts.box_tests <= 2 * nodes * counts.rays(), "{counts:?} of {nodes} nodes");
-        assert!(counts.triangle_tests <= triangles * counts.rays(), "{counts:?} of {triangles} triangles");
+        assert!(counts.triangle_tests <= primitives * counts.rays(), "{counts:?} of {primitives} primitives");
     }
     seen
 }

@@ -50,6 +50,8 @@ fn blob_of<K: Kernel>(data: &[u8]) {
     if let Some(mut draft) = Draft::<K>::read(signed.bytes()) {
         let made = |triangle: &K::Triangle| draft.triangle(&K::vertices(triangle), K::material(triangle));
         draft.triangles = draft.triangles.iter().map(|triangle| made(triangle).unwrap_or(*triangle)).collect();
+        let made = |sphere: &K::Sphere| K::sphere(&K::ball(sphere), K::sphere_material(sphere));
+        draft.spheres = draft.spheres.iter().map(|sphere| made(sphere).unwrap_or(*sphere)).collect();
         render_if_accepted::<K>(&draft.write());
     }
 }

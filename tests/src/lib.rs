@@ -1,5 +1,7 @@
 //! Oracles and helpers that the tests share. Nothing here calls the code that it checks.
 
+pub mod ball_rays;
+pub mod balls;
 pub mod blobs;
 pub mod boards;
 pub mod fuzz;

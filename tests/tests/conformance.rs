@@ -5,6 +5,7 @@ use core_rt::bvh::{Bvh, Intersect};
 use core_rt::exact::{Exact, Ray, Width, Width14, Width20, Width29};
 use core_rt::kernel::{Kernel, NONE, Vertices};
 use core_rt::num::Word;
+use core_rt::profile::Full;
 use core_rt::scene::MAX_DEPTH;
 use core_rt::section::Integers;
 use core_rt::stats::NoStats;
@@ -46,8 +47,14 @@ where
         }
     }
 
-    fn view(&self) -> Bvh<'_, Exact<W>> {
-        Bvh { root: self.root, nodes: &self.nodes, triangles: &self.triangles, ids: Integers::Wide(&self.ids) }
+    fn view(&self) -> Bvh<'_, Full<Exact<W>>> {
+        Bvh {
+            root: self.root,
+            nodes: &self.nodes,
+            triangles: &self.triangles,
+            spheres: &[],
+            ids: Integers::Wide(&self.ids),
+        }
     }
 
     /// The kernel's ray for an oracle's.

@@ -3,7 +3,9 @@
 
 use glam::DVec3;
 use host_tools::engine::ENGINES;
-use host_tools::model::{Camera, Light, LightKind, Material, Model, Projection, RenderSettings, Transfer, Triangle};
+use host_tools::model::{
+    Camera, Light, LightKind, Material, Model, Projection, RenderSettings, Sphere, Transfer, Triangle,
+};
 use host_tools::prepare::Options;
 use host_tools::tree::TreeOptions;
 use proptest::prelude::*;
@@ -54,15 +56,27 @@ fn model() -> impl Strategy<Value = Model> {
             ..RenderSettings::default()
         });
         let lights = prop::collection::vec(light(), 0..4);
-        let triangles = prop::collection::vec(triangle, 1..60);
-        (triangles, lights, camera, colour(), render).prop_map(
-            move |(triangles, lights, camera, background, render)| {
+        let triangles = prop::collection::vec(triangle, 0..60);
+        // From what no grid can tell from a point to what leaves no room for the rest.
+        let radius = (1.0..2.0, -40..40).prop_map(|(mantissa, exponent)| mantissa * libm::exp2(f64::from(exponent)));
+        let sphere = (point(), radius, 0..materials.len() as u32).prop_map(|(centre, radius, material)| Sphere {
+            centre,
+            radius,
+            material,
+        });
+        let spheres = prop::collection::vec(sphere, 0..12);
+        let primitives = (triangles, spheres).prop_filter("the importer refuses nothing", |(triangles, spheres)| {
+            !(triangles.is_empty() && spheres.is_empty())
+        });
+        (primitives, lights, camera, colour(), render).prop_map(
+            move |((triangles, spheres), lights, camera, background, render)| {
                 let material =
                     |&(colour, emission): &(DVec3, DVec3)| Material { colour, emission, ..Material::default() };
                 Model {
                     positions: positions.clone(),
                     normals: normals.clone(),
                     triangles,
+                    spheres,
                     materials: materials.iter().map(material).collect(),
                     lights,
                     camera,
@@ -95,6 +109,7 @@ proptest! {
             let Ok(prepared) = engine.prepare(&model, &Options { tree, ..Options::default() }) else { continue };
             let (header, _) = engine.inspect(prepared.blob.bytes()).map_err(|e| TestCaseError::fail(e.to_string()))?;
             prop_assert_eq!(header.counts.triangles + prepared.degenerates.total(), model.triangles.len() as u32);
+            prop_assert_eq!(header.counts.spheres + prepared.degenerates.spheres, model.spheres.len() as u32);
             let rendered = engine.render(prepared.blob.bytes(), [16, 16], &|_| {});
             prop_assert!(rendered.is_ok());
         }

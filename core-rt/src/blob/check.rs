@@ -1,6 +1,6 @@
 //! The one check of a scene's contents, after which no accessor fails.
 //!
-//! The tree must be in preorder and the triangles in the order of its leaves, each exactly once: then it is a tree, it
+//! The tree must be in preorder, and triangles and spheres in the order of its leaves, each exactly once: then it is a tree, it
 //! ends, and its depth is what a traversal's stack must hold.
 
 use heapless::Vec;
@@ -9,26 +9,40 @@ use super::{BlobError, Header};
 use crate::bvh::{Bvh, Child};
 use crate::colour::{Radiance, Transfer};
 use crate::kernel::{Bounds, Kernel};
-use crate::profile::{Need, Needs};
+use crate::profile::{Need, Needs, Profile};
 use crate::record::{Light, Lustre, Material, Reach};
 use crate::scene::{MAX_DEPTH, Shading};
 use crate::space::{Space, is_unit_q30};
 
 /// Checks everything that the sections say; camera rays by a function that knows which there are.
-pub(crate) fn check<K: Kernel>(
+pub(crate) fn check<P: Profile>(
     header: &Header,
-    settings: K::Settings,
+    settings: <P::Kernel as Kernel>::Settings,
     starts_within: impl Fn(&Bounds) -> bool,
-    bvh: &Bvh<'_, K>,
-    shading: &Shading<'_, K>,
+    bvh: &Bvh<'_, P>,
+    shading: &Shading<'_, P::Kernel>,
 ) -> Result<(), BlobError> {
     tree(header, bvh)?;
     origins(starts_within, bvh, shading)?;
+    triangles(header, settings, bvh, shading)?;
+    if P::NEEDS.has(Need::Spheres) {
+        spheres(header, bvh, shading)?;
+    }
+    materials_and_lights(header, shading)
+}
+
+/// Every triangle must be what the kernel makes of its vertices, and what it refers to must be there.
+fn triangles<P: Profile>(
+    header: &Header,
+    settings: <P::Kernel as Kernel>::Settings,
+    bvh: &Bvh<'_, P>,
+    shading: &Shading<'_, P::Kernel>,
+) -> Result<(), BlobError> {
     for (index, triangle) in (0..).zip(bvh.triangles) {
-        let material = K::material(triangle);
-        let vertices = K::vertices(triangle);
+        let material = P::Kernel::material(triangle);
+        let vertices = P::Kernel::vertices(triangle);
         // Whatever the vertices wrap to, only a record made from vertices on the grid is equal to what is made of them.
-        let consistent = K::triangle(settings, &vertices, material).is_some_and(|made| made == *triangle);
+        let consistent = P::Kernel::triangle(settings, &vertices, material).is_some_and(|made| made == *triangle);
         let id_exists = bvh.ids.get(index) < header.file_triangles;
         let normals_exist = shading.normal_indices.is_empty()
             || shading.normal_indices.triple(index).iter().all(|&n| (n as usize) < shading.normals.len())
@@ -37,6 +51,25 @@ pub(crate) fn check<K: Kernel>(
             return Err(BlobError::Triangle { index });
         }
     }
+    Ok(())
+}
+
+/// Every sphere must be one that the kernel holds, and what it refers to must be there.
+fn spheres<P: Profile>(header: &Header, bvh: &Bvh<'_, P>, shading: &Shading<'_, P::Kernel>) -> Result<(), BlobError> {
+    for (index, (sphere, place)) in (0..).zip(bvh.spheres.iter().zip(bvh.triangles.len() as u32..)) {
+        let material = P::Kernel::sphere_material(sphere);
+        let consistent = P::Kernel::sphere(&P::Kernel::ball(sphere), material).is_some_and(|made| made == *sphere);
+        let id_exists =
+            bvh.ids.get(place).checked_sub(header.file_triangles).is_some_and(|number| number < header.file_spheres);
+        if !(consistent && id_exists && (material as usize) < shading.materials.len()) {
+            return Err(BlobError::Sphere { index });
+        }
+    }
+    Ok(())
+}
+
+/// What shading reads must be in range, and declared.
+fn materials_and_lights<K: Kernel>(header: &Header, shading: &Shading<'_, K>) -> Result<(), BlobError> {
     let radiances = shading.materials.iter().map(|m| &m.emission).chain(shading.lights.iter().map(|l| &l.radiance));
     let in_range = radiances
         .chain(&header.background)
@@ -58,25 +91,21 @@ pub(crate) fn check<K: Kernel>(
 }
 
 /// Origins of camera rays and point lights must be where the kernel's differences hold them.
-fn origins<K: Kernel>(
+fn origins<P: Profile>(
     starts_within: impl Fn(&Bounds) -> bool,
-    bvh: &Bvh<'_, K>,
-    shading: &Shading<'_, K>,
+    bvh: &Bvh<'_, P>,
+    shading: &Shading<'_, P::Kernel>,
 ) -> Result<(), BlobError> {
-    let whole = match (bvh.nodes, bvh.triangles) {
-        ([root, ..], _) => {
-            let [a, b] = K::boxes(root);
+    let whole = match bvh.nodes {
+        [root, ..] => {
+            let [a, b] = P::Kernel::boxes(root);
             a.union(&b)
         }
         // The root is a leaf.
-        ([], [first, rest @ ..]) => {
-            let bounds = |triangle| Bounds::of(&K::vertices(triangle));
-            rest.iter().fold(bounds(first), |whole, triangle| whole.union(&bounds(triangle)))
-        }
-        ([], []) => return Err(BlobError::Sections),
+        [] => bvh.bounds().reduce(|a, b| a.union(&b)).ok_or(BlobError::Sections)?,
     };
     let mut lights = shading.lights.iter().filter(|light| light.kind == Light::POINT).map(|light| light.place);
-    let fits = lights.all(|origin| whole.spanned_from(origin, K::SPAN)) && starts_within(&whole);
+    let fits = lights.all(|origin| whole.spanned_from(origin, P::Kernel::SPAN)) && starts_within(&whole);
     if fits { Ok(()) } else { Err(BlobError::Origin) }
 }
 
@@ -151,11 +180,12 @@ impl Pending {
 
 // Out of line, so that its stack is not on top of what the header takes while it is decoded.
 #[inline(never)]
-fn tree<K: Kernel>(header: &Header, bvh: &Bvh<'_, K>) -> Result<(), BlobError> {
+fn tree<P: Profile>(header: &Header, bvh: &Bvh<'_, P>) -> Result<(), BlobError> {
     // The root has no parent, but what the box test computes with must lie on the grid.
-    let (low, high) = (K::MARGIN, (1 << K::GRID_BITS) - 1 - K::MARGIN);
+    let (low, high) = (P::Kernel::MARGIN, (1 << P::Kernel::GRID_BITS) - 1 - P::Kernel::MARGIN);
     let grid = Bounds { low: [low; 3], high: [high; 3] };
-    let (mut next_node, mut next_triangle) = (0, 0);
+    let triangles = bvh.triangles.len() as u32;
+    let (mut next_node, mut next_triangle, mut next_sphere) = (0, 0, triangles);
     let mut pending: Vec<Pending, { MAX_DEPTH + 1 }> = Vec::new();
     // A subtree: its reference, the node and slot that hold it, and its level.
     let mut current: (u32, Option<(u32, bool)>, u8) = (bvh.root, None, 0);
@@ -163,7 +193,7 @@ fn tree<K: Kernel>(header: &Header, bvh: &Bvh<'_, K>) -> Result<(), BlobError> {
         let (reference, holder, level) = current;
         let node = holder.map_or(0, |(node, _)| node);
         let held = holder.and_then(|(node, second)| {
-            let [a, b] = K::boxes(bvh.nodes.get(node as usize)?);
+            let [a, b] = P::Kernel::boxes(bvh.nodes.get(node as usize)?);
             Some(if second { b } else { a })
         });
         let inside = |content: &Bounds| held.unwrap_or(grid).contains(content);
@@ -177,34 +207,44 @@ fn tree<K: Kernel>(header: &Header, bvh: &Bvh<'_, K>) -> Result<(), BlobError> {
                 if level >= header.depth {
                     return Err(BlobError::Depth { stated: header.depth });
                 }
-                if !K::boxes(record).iter().all(inside) {
+                if !P::Kernel::boxes(record).iter().all(inside) {
                     return Err(BlobError::Bounds { node });
                 }
-                let [first, _] = K::children(record);
+                let [first, _] = P::Kernel::children(record);
                 pending.push(Pending::new(index, level + 1)).map_err(|_| BlobError::Depth { stated: header.depth })?;
                 current = (first, Some((index, false)), level + 1);
             }
             Child::Leaf { first, count } => {
-                if first != next_triangle {
-                    return Err(BlobError::Tree { node });
-                }
-                next_triangle += count;
-                let run = bvh.triangles.get(first as usize..next_triangle as usize);
-                let run = run.ok_or(BlobError::Tree { node })?;
-                if !run.iter().all(|t| inside(&Bounds::of(&K::vertices(t)))) {
+                let enclosed = if P::NEEDS.has(Need::Spheres) && first >= triangles {
+                    let run = next(bvh.spheres, triangles, &mut next_sphere, first, count);
+                    run.ok_or(BlobError::Tree { node })?.iter().all(|s| inside(&P::Kernel::ball(s).bounds()))
+                } else {
+                    let run = next(bvh.triangles, 0, &mut next_triangle, first, count);
+                    let run = run.ok_or(BlobError::Tree { node })?;
+                    run.iter().all(|t| inside(&Bounds::of(&P::Kernel::vertices(t))))
+                };
+                if !enclosed {
                     return Err(BlobError::Bounds { node });
                 }
                 let Some(waiting) = pending.pop() else { break };
                 let (node, level) = (waiting.node(), waiting.level());
                 let record = bvh.nodes.get(node as usize).ok_or(BlobError::Tree { node })?;
-                let [_, second] = K::children(record);
+                let [_, second] = P::Kernel::children(record);
                 current = (second, Some((node, true)), level);
             }
         }
     }
-    if next_node as usize == bvh.nodes.len() && next_triangle as usize == bvh.triangles.len() {
-        Ok(())
-    } else {
-        Err(BlobError::Tree { node: next_node })
+    let is_whole = next_node as usize == bvh.nodes.len()
+        && next_triangle == triangles
+        && (!P::NEEDS.has(Need::Spheres) || (next_sphere - triangles) as usize == bvh.spheres.len());
+    if is_whole { Ok(()) } else { Err(BlobError::Tree { node: next_node }) }
+}
+
+/// The records of a leaf, of those that are numbered from `base` on, if its first is the one that comes next.
+fn next<'a, T>(records: &'a [T], base: u32, next: &mut u32, first: u32, count: u32) -> Option<&'a [T]> {
+    if first != *next {
+        return None;
     }
+    *next += count; // at most 2^25 + 64
+    records.get((first - base) as usize..(first - base + count) as usize)
 }

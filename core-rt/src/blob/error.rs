@@ -48,7 +48,7 @@ pub enum BlobError {
     Header,
     /// Sections do not fill the body.
     Sections,
-    /// The tree is not one: a reference leads elsewhere than to the next node or triangle.
+    /// The tree is not one: a reference leads elsewhere than to the next node, triangle or sphere.
     Tree {
         /// The node that holds the reference.
         node: u32,
@@ -58,7 +58,7 @@ pub enum BlobError {
         /// The depth that it states.
         stated: u8,
     },
-    /// A child's box is not inside its parent's, or a triangle not inside its leaf's.
+    /// A child's box is not inside its parent's, or a primitive not inside its leaf's.
     Bounds {
         /// The node that holds the box.
         node: u32,
@@ -66,6 +66,11 @@ pub enum BlobError {
     /// A triangle is not what the kernel would make of its vertices, or its material or normals do not exist.
     Triangle {
         /// The record's index.
+        index: u32,
+    },
+    /// A sphere is not one that the kernel holds, or its material does not exist.
+    Sphere {
+        /// The record's index among spheres.
         index: u32,
     },
     /// The eye or a light is farther from the geometry than the kernel's numbers reach.
@@ -104,6 +109,7 @@ impl Display for BlobError {
             Self::Depth { stated } => write!(f, "the blob's tree is deeper than the {stated} levels that it states"),
             Self::Bounds { node } => write!(f, "a box does not enclose what is in it, at node {node}"),
             Self::Triangle { index } => write!(f, "triangle record {index} is inconsistent"),
+            Self::Sphere { index } => write!(f, "sphere record {index} is inconsistent"),
             Self::Origin => f.write_str("the camera or a light is too far from the geometry for the blob's kernel"),
             Self::Shading => f.write_str("a material, a light or a normal is out of range"),
             Self::Undeclared(need) => write!(f, "the blob has {need}, which its header does not declare"),

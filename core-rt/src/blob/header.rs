@@ -49,6 +49,8 @@ pub struct Counts {
     pub nodes: u32,
     /// Triangles, and their ids.
     pub triangles: u32,
+    /// Spheres, and their ids behind those.
+    pub spheres: u32,
     /// Triangles with normal indices: none or all.
     pub smooth: u32,
     /// Unit normals.
@@ -101,8 +103,10 @@ pub struct Header {
     pub depth: u8,
     /// Section sizes.
     pub counts: Counts,
-    /// Triangles in the file, degenerate ones included: ids are below this.
+    /// Triangles in the file, degenerate ones included: their ids are below this.
     pub file_triangles: u32,
+    /// Spheres in the file, too small ones included: their ids follow those of triangles.
+    pub file_spheres: u32,
     /// What the kernel computes with.
     pub arithmetic: Arithmetic,
     /// Where the grid came from.

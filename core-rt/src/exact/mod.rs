@@ -1,6 +1,6 @@
 //! The exact kernels: one algorithm, instantiated by a [`Width`].
 //!
-//! Whether a ray hits a triangle is decided by the signs of three integers that are computed without error, and
+//! Whether a ray hits a triangle or a sphere is decided by the signs of integers that are computed without error, and
 //! which of two hits is nearer by comparing fractions. A filter in one machine word decides all but the closest
 //! calls. Boxes are conservative, so a hit is never lost. Nearest means: the smallest (t, id).
 //!
@@ -11,6 +11,7 @@
 mod boxes;
 mod ray;
 mod resolve;
+mod sphere;
 mod triangle;
 mod width;
 mod width14;
@@ -20,6 +21,7 @@ mod width29;
 pub(crate) use boxes::slab;
 pub use boxes::{BoxNode, BoxNode14, BoxNode29};
 pub use ray::Ray;
+pub(crate) use sphere::{Crossing, crossing};
 pub use triangle::{Depth, TriangleRecord};
 pub use width::{Reciprocal, Wide, Width};
 pub use width14::Width14;
@@ -34,6 +36,7 @@ use crate::camera::Camera;
 use crate::kernel::{Bounds, Kernel, NONE, Surface, Vertices, octant};
 use crate::num::{Triple, Word};
 use crate::space::Space;
+use crate::sphere::{Ball, SphereRecord};
 
 /// The exact kernel of a width.
 #[derive(Clone, Copy, Debug, Default)]
@@ -56,12 +59,14 @@ impl<W: Width> Kernel for Exact<W> {
     const SPAN: i32 = W::SPAN;
     const DIRECTION_BITS: u32 = W::DIRECTION_BITS;
     const MATERIALS_MAX: u32 = W::MATERIALS_MAX;
+    const RADIUS_MIN: i32 = sphere::RADIUS_MIN;
 
     type Settings = ();
     type Space = W::Space;
     type Word = W::Word;
     type Node = W::Node;
     type Triangle = TriangleRecord<W::Short>;
+    type Sphere = SphereRecord<W::Short>;
     type Ray = Ray<W>;
     type Distance = W::Word;
     type Depth = Depth<W>;
@@ -98,6 +103,22 @@ impl<W: Width> Kernel for Exact<W> {
     #[inline]
     fn material(triangle: &Self::Triangle) -> u32 {
         W::split_meta(triangle.meta()).1
+    }
+
+    fn sphere(ball: &Ball, material: u32) -> Option<Self::Sphere> {
+        if !ball.fits::<Self>() || material > W::MATERIALS_MAX {
+            return None;
+        }
+        SphereRecord::new(ball, material)
+    }
+
+    fn ball(sphere: &Self::Sphere) -> Ball {
+        sphere.ball::<W::Word>()
+    }
+
+    #[inline]
+    fn sphere_material(sphere: &Self::Sphere) -> u32 {
+        sphere.material::<W::Word>()
     }
 
     #[inline]
@@ -145,6 +166,11 @@ impl<W: Width> Kernel for Exact<W> {
         triangle::intersect(ray, triangle)
     }
 
+    #[inline]
+    fn intersect_sphere(ray: &Ray<W>, sphere: &Self::Sphere, leaves: bool) -> Option<Depth<W>> {
+        sphere::intersect(ray, sphere, leaves)
+    }
+
     #[inline(always)]
     fn limit(depth: &Depth<W>) -> W::Word {
         depth.t
@@ -168,5 +194,9 @@ impl<W: Width> Kernel for Exact<W> {
 
     fn resolve(ray: &Ray<W>, triangle: &Self::Triangle) -> Surface<W::Space> {
         resolve::resolve(ray, triangle)
+    }
+
+    fn resolve_sphere(ray: &Ray<W>, sphere: &Self::Sphere) -> Surface<W::Space> {
+        sphere::resolve(ray, sphere)
     }
 }

@@ -199,6 +199,12 @@ fn depth<W: Width>(ray: &Ray<W>, s: Triple<W::Word>, e1: Triple<W::Word>, e2: Tr
     if numerator <= W::Wide::default() {
         return None;
     }
+    within_reach(ray, numerator, denominator)
+}
+
+/// The hit at a t of positive parts, if that is within the ray's reach.
+#[inline(always)]
+pub(super) fn within_reach<W: Width>(ray: &Ray<W>, numerator: W::Wide, denominator: W::Wide) -> Option<Depth<W>> {
     // n < d 2^r iff floor(n / 2^r) < d, and n 2^r < d iff n < ceil(d / 2^r): no shift that could overflow.
     let within_reach = match ray.reach {
         None => true,

@@ -90,7 +90,7 @@ pub trait Width: Copy + Debug + Default + Send + Sync + 'static {
     /// The word of the hot path.
     type Word: Word;
     /// The word of exact decisions.
-    type Wide: Wide;
+    type Wide: Wide + From<Self::Word>;
     /// A signed coordinate in a triangle's record.
     type Short: Record + Into<Self::Word> + TryFrom<i64> + Default;
     /// The record of a node.
@@ -100,6 +100,12 @@ pub trait Width: Copy + Debug + Default + Send + Sync + 'static {
 
     /// The exact `a . b`, for `a` an edge, an origin's offset or a direction and `b` a cross product of two of these.
     fn dot(a: Triple<Self::Word>, b: Triple<Self::Word>) -> Self::Wide;
+    /// The exact `a . a`, for `a` an edge, an origin's offset or a direction.
+    fn square(a: Triple<Self::Word>) -> Self::Wide;
+    /// `sqrt(b^2 - a c)` rounded down, and whether it is whole; `None` where it is not real. For the [sphere test's] a, b, c.
+    ///
+    /// [sphere test's]: crate::exact
+    fn discriminant_root(a: Self::Wide, b: Self::Wide, c: Self::Wide) -> Option<(Self::Wide, bool)>;
     /// The order of `a.0 / a.1` and `b.0 / b.1`, exactly; all positive.
     fn order(a: (Self::Wide, Self::Wide), b: (Self::Wide, Self::Wide)) -> Ordering;
     /// `numerator / denominator` with [`Width::T_BITS`], within [`Width::SLACK`] of true; both positive, and the
@@ -114,6 +120,15 @@ pub trait Width: Copy + Debug + Default + Send + Sync + 'static {
         numerator: Self::Wide,
         denominator: Self::Wide,
     ) -> <Self::Space as Space>::Point;
+    /// The point on a sphere `s + direction * numerator / denominator` from its `centre`, and that vector to the point, of any
+    /// length, within 2^-11 grid units along each axis: a normal needs more bits than a point has.
+    fn on_sphere(
+        centre: Triple<Self::Word>,
+        s: Triple<Self::Word>,
+        direction: Triple<Self::Word>,
+        numerator: Self::Wide,
+        denominator: Self::Wide,
+    ) -> (<Self::Space as Space>::Point, Triple<Self::Word>);
     /// `vector` with length 1; `None` for zero.
     fn normalise(vector: Triple<Self::Word>) -> Option<<Self::Space as Space>::Unit>;
     /// The grid point from which rays leave a surface, off it on its normal's side. Each width proves that no ray

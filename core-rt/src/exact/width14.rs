@@ -8,6 +8,10 @@
 //! | R = S x D | < 2^29 | `i32` |
 //! | N = e1 x e2 | < 2^30 (area of a projection) | `i32` |
 //! | U, V, det, tn | < 3 * 2^15 * 2^30 < 2^47 | `i64` |
+//! | S . S, r^2 | < 3 * 2^30 | `u32` |
+//! | D . D | < 3 * 2^26 | `i32` |
+//! | S . D | < 3 * 2^28 | `i32` |
+//! | its square, (D . D) (S . S - r^2) | < 9 * 2^56 < 2^60 | `i64` |
 //! | t | < 2^15 / 2^12 = 2^3 | Q13 in 16 bits |
 //!
 //! The budget is on differences, so a camera inside the geometry costs nothing and the grid has 15 bits; one that looks
@@ -95,6 +99,22 @@ impl Width for Width14 {
         (sum(|b| b >> 15) << 15) + sum(|b| b & 0x7fff)
     }
 
+    /// Below 3 * 2^30.
+    #[inline(always)]
+    fn square(a: Triple<i32>) -> i64 {
+        a.iter().map(|&c| (c * c) as u32).sum::<u32>().into()
+    }
+
+    #[inline]
+    fn discriminant_root(a: i64, b: i64, c: i64) -> Option<(i64, bool)> {
+        let discriminant = b * b - a * c;
+        if discriminant < 0 {
+            return None;
+        }
+        let root = discriminant.cast_unsigned().isqrt().cast_signed();
+        Some((root, root * root == discriminant))
+    }
+
     #[inline]
     fn order(a: (i64, i64), b: (i64, i64)) -> Ordering {
         (i128::from(a.0) * i128::from(b.1)).cmp(&(i128::from(b.0) * i128::from(a.1)))
@@ -120,23 +140,43 @@ impl Width for Width14 {
         <Grid14 as Space>::Fraction::from_bits(fraction as i16)
     }
 
-    /// t to Q16 by one correction of the approximate depth: with t0 in Q16, the remainder (tn << 16) - t0 det is at most
-    /// SLACK * 2^3 = 2^6 determinants, and its quotient by the 16-bit reciprocal is within 2^-7 of true before the floor. So t
-    /// is low by less than 2^-16 (1 + 2^-7). |D t| is at most SPAN grid units, so below 2^31 - 2^18 in Q16.
+    /// t is low by less than 2^-16 (1 + 2^-7). |D t| is at most SPAN grid units, so below 2^31 - 2^18 in Q16.
     #[inline]
     fn point(origin: Triple<i32>, direction: Triple<i32>, numerator: i64, denominator: i64) -> Triple<i32> {
-        let t0_q16 = Self::depth(numerator, denominator) << 3;
-        // tn < 2^47, so tn << 16 fits, and t0 det is the same within 2^6 det < 2^51.
-        let remainder = (numerator << 16) - i64::from(t0_q16) * denominator;
-        let bits = bits_of(denominator);
-        let r = reciprocal(scaled(denominator, bits, 16) as u32);
-        // |remainder| < 2^6 det: scaled to a denominator of 16 bits and 8 bits less, below 2^14.
-        let scaled = scaled(remainder, bits, 8) as i32;
-        // mantissa / 2^31 is 1 / the 16-bit denominator.
-        let t_q16 = t0_q16 + ((scaled * r.mantissa as i32) >> 23);
+        let t_q16 = quotient_q16(numerator, denominator);
         let moved =
             |origin: i32, direction: i32| (origin << POINT_BITS) + round_shift(direction * t_q16, 16 - POINT_BITS);
         [moved(origin[0], direction[0]), moved(origin[1], direction[1]), moved(origin[2], direction[2])]
+    }
+
+    /// t to Q26 by a second correction. What is left of tn after t in Q16 is between -1/64 and 65/64 determinants, and its
+    /// quotient in Q10 is off by less than 1 1/4: 1/8 by the truncation of the numerator to 13 bits or more, 1/16 by
+    /// that of the denominator and the reciprocal, 1 by the floor. So t is within 5/4 * 2^-26, and D t within 5/4 * 2^-13. The rest
+    /// are 2^-17 of rounding, and the 2^-12 of a t that was rounded up to a multiple of 1 / |D|^2. The sum is a radius at
+    /// most, below 2^30 in Q16; its terms may wrap.
+    #[inline]
+    fn on_sphere(
+        centre: Triple<i32>,
+        s: Triple<i32>,
+        direction: Triple<i32>,
+        numerator: i64,
+        denominator: i64,
+    ) -> (Triple<i32>, Triple<i32>) {
+        const OFFSET_BITS: u32 = 16;
+        let t_q16 = quotient_q16(numerator, denominator);
+        let remainder = (numerator << 16) - i64::from(t_q16) * denominator;
+        let bits = bits_of(denominator);
+        let r = reciprocal(scaled(denominator, bits, 16) as u32);
+        // At most 65/64 * 2^14, times a mantissa below 2^16; mantissa / 2^29 is 1 / the 14-bit denominator.
+        let rest_q26 = (scaled(remainder, bits, 14) as i32 * r.mantissa as i32) >> 19;
+        let offset = [0, 1, 2].map(|axis| {
+            let coarse = direction[axis] * t_q16; // at most SPAN grid units
+            let fine = round_shift(direction[axis] * rest_q26, 26 - OFFSET_BITS); // 2^13 * 2^11
+            (s[axis] << OFFSET_BITS).wrapping_add(coarse).wrapping_add(fine)
+        });
+        let point =
+            [0, 1, 2].map(|axis| (centre[axis] << POINT_BITS) + round_shift(offset[axis], OFFSET_BITS - POINT_BITS));
+        (point, offset)
     }
 
     #[inline]
@@ -168,6 +208,22 @@ impl Width for Width14 {
     fn split_meta(meta: i16) -> (u32, u32) {
         (u32::from(meta as u16 & 15), u32::from(meta as u16 >> 4))
     }
+}
+
+/// t to Q16 by one correction of the approximate depth: with t0 in Q16, the remainder (tn << 16) - t0 det is at most
+/// SLACK * 2^3 = 2^6 determinants, and its quotient by the 16-bit reciprocal is within 2^-7 of true before the floor. So t
+/// is low by less than 2^-16 (1 + 2^-7).
+#[inline(always)]
+fn quotient_q16(numerator: i64, denominator: i64) -> i32 {
+    let t0_q16 = Width14::depth(numerator, denominator) << 3;
+    // tn < 2^47, so tn << 16 fits, and t0 det is the same within 2^6 det < 2^51.
+    let remainder = (numerator << 16) - i64::from(t0_q16) * denominator;
+    let bits = bits_of(denominator);
+    let r = reciprocal(scaled(denominator, bits, 16) as u32);
+    // |remainder| < 2^6 det: scaled to a denominator of 16 bits and 8 bits less, below 2^14.
+    let scaled = scaled(remainder, bits, 8) as i32;
+    // mantissa / 2^31 is 1 / the 16-bit denominator.
+    t0_q16 + ((scaled * r.mantissa as i32) >> 23)
 }
 
 /// The number of bits of a positive value.

@@ -8,6 +8,10 @@
 //! | N = e1 x e2 | < 2^40 (area of a projection) | `i64` |
 //! | U, V, W, det | < 3 * 2^61 < 2^63 | `i64` |
 //! | tn | <= 2^61 | `i64` |
+//! | S . S, r^2 | < 3 * 2^40 | `i64` |
+//! | D . D | < 3 * 2^42 | `i64` |
+//! | S . D | < 3 * 2^41 | `i64` |
+//! | its square, (D . D) (S . S - r^2) | < 9 * 2^82 | `i128`, spheres alone |
 //! | t | <= 2^20 / 2^20 = 1 | Q41 |
 //!
 //! **U fits.** It is the triple product of D with an edge and an offset of the origin. The ends of the edge and the origin
@@ -25,7 +29,7 @@ use super::Width29;
 use super::boxes::BoxNode29;
 use super::width::{Reciprocal, Width};
 use crate::kernel::Surface;
-use crate::num::Triple;
+use crate::num::{Triple, dot};
 use crate::space::{Grid29, Space};
 
 /// The widths of `exact20`.
@@ -85,6 +89,17 @@ impl Width for Width20 {
         product(0).wrapping_add(product(1)).wrapping_add(product(2))
     }
 
+    #[inline(always)]
+    fn square(a: Triple<i64>) -> i64 {
+        dot(a, a)
+    }
+
+    /// The root is below 2^44, as b is.
+    #[inline]
+    fn discriminant_root(a: i64, b: i64, c: i64) -> Option<(i64, bool)> {
+        Width29::discriminant_root(a.into(), b.into(), c.into()).map(|(root, is_whole)| (root as i64, is_whole))
+    }
+
     #[inline]
     fn order(a: (i64, i64), b: (i64, i64)) -> Ordering {
         (i128::from(a.0) * i128::from(b.1)).cmp(&(i128::from(b.0) * i128::from(a.1)))
@@ -110,6 +125,18 @@ impl Width for Width20 {
     #[inline]
     fn point(origin: Triple<i64>, direction: Triple<i64>, numerator: i64, denominator: i64) -> Triple<i64> {
         Width29::point(origin, direction, numerator.into(), denominator.into())
+    }
+
+    /// As [`Width29`]'s, with t <= 1; but what a t that was rounded up to a multiple of 1 / |D|^2 adds is up to 2^-20.
+    #[inline]
+    fn on_sphere(
+        centre: Triple<i64>,
+        s: Triple<i64>,
+        direction: Triple<i64>,
+        numerator: i64,
+        denominator: i64,
+    ) -> (Triple<i64>, Triple<i64>) {
+        Width29::on_sphere(centre, s, direction, numerator.into(), denominator.into())
     }
 
     #[inline]

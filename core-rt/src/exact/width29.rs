@@ -7,6 +7,10 @@
 //! | R = S x D | < 2^61 | `i64` |
 //! | N = e1 x e2 | < 2^58 (area of a projection) | `i64` |
 //! | U, V, det, tn | < 3 * 2^29 * 2^61 < 2^92 | `i128` |
+//! | S . S, r^2 | < 3 * 2^58 | `i64` |
+//! | D . D | < 3 * 2^62 | `u64` |
+//! | S . D | < 3 * 2^60 | `i64` |
+//! | its square, (D . D) (S . S - r^2) | < 9 * 2^120 < 2^124 | `i128` |
 //! | t | <= 2^29 / 2^30 = 1/2 | Q31 |
 //!
 //! Vertices keep a margin from the ends of the grid, so that origins that stand off a surface are no farther from any
@@ -82,6 +86,22 @@ impl Width for Width29 {
         product(a[0], b[0]) + product(a[1], b[1]) + product(a[2], b[2])
     }
 
+    /// Below 3 * 2^62.
+    #[inline(always)]
+    fn square(a: Triple<i64>) -> i128 {
+        a.iter().map(|&c| (c * c) as u64).sum::<u64>().into()
+    }
+
+    #[inline]
+    fn discriminant_root(a: i128, b: i128, c: i128) -> Option<(i128, bool)> {
+        let discriminant = b * b - a * c;
+        if discriminant < 0 {
+            return None;
+        }
+        let root = discriminant.cast_unsigned().isqrt().cast_signed();
+        Some((root, root * root == discriminant))
+    }
+
     #[inline]
     fn order(a: (i128, i128), b: (i128, i128)) -> Ordering {
         wide_product(a.0, b.1).cmp(&wide_product(b.0, a.1))
@@ -109,15 +129,33 @@ impl Width for Width29 {
     /// t in Q62 from 64 leading bits of the denominator, so within 2^-61; D t is within 2^-30 before its rounding to Q8.
     #[inline]
     fn point(origin: Triple<i64>, direction: Triple<i64>, numerator: i128, denominator: i128) -> Triple<i64> {
-        let bits = i128::BITS - denominator.leading_zeros();
-        let scaled = |value: i128| if bits > 64 { value >> (bits - 64) } else { value } as u128;
-        // t <= 1/2: the numerator is at most 2^63 here, and 2^125 shifted.
-        let t_q62 = ((scaled(numerator) << 62) / scaled(denominator).max(1)) as i128;
+        let t_q62 = quotient_q62(numerator, denominator);
         let moved = |origin: i64, direction: i64| {
             let offset_q62 = i128::from(direction) * t_q62; // at most 2^31 * 2^61
-            (origin << POINT_BITS) + ((offset_q62 + (1 << (61 - POINT_BITS))) >> (62 - POINT_BITS)) as i64
+            (origin << POINT_BITS) + round_shift_wide(offset_q62, 62 - POINT_BITS)
         };
         [moved(origin[0], direction[0]), moved(origin[1], direction[1]), moved(origin[2], direction[2])]
+    }
+
+    /// D t is within 2^-30, as for a point, and its rounding within 2^-33. A t that was rounded up to a multiple of 1 / |D|^2
+    /// adds at most 2^-30. The offset is a radius at most, below 2^60 in Q32.
+    #[inline]
+    fn on_sphere(
+        centre: Triple<i64>,
+        s: Triple<i64>,
+        direction: Triple<i64>,
+        numerator: i128,
+        denominator: i128,
+    ) -> (Triple<i64>, Triple<i64>) {
+        const OFFSET_BITS: u32 = 32;
+        let t_q62 = quotient_q62(numerator, denominator);
+        let offset = [0, 1, 2].map(|axis| {
+            let moved_q62 = i128::from(direction[axis]) * t_q62; // at most 2^31 * 2^61
+            (s[axis] << OFFSET_BITS) + round_shift_wide(moved_q62, 62 - OFFSET_BITS)
+        });
+        let point =
+            [0, 1, 2].map(|axis| (centre[axis] << POINT_BITS) + round_shift(offset[axis], OFFSET_BITS - POINT_BITS));
+        (point, offset)
     }
 
     #[inline]
@@ -150,6 +188,21 @@ impl Width for Width29 {
         // 30 and 31 are no shifts; `min` keeps NORMAL_BITS - shift from wrapping.
         ((meta as u32 & 31).min(Self::NORMAL_BITS), meta as u32 >> 5)
     }
+}
+
+/// t in Q62 from 64 leading bits of the denominator, so within 2^-61.
+#[inline(always)]
+fn quotient_q62(numerator: i128, denominator: i128) -> i128 {
+    let bits = i128::BITS - denominator.leading_zeros();
+    let scaled = |value: i128| if bits > 64 { value >> (bits - 64) } else { value } as u128;
+    // t <= 1/2: the numerator is at most 2^63 here, and 2^125 shifted.
+    ((scaled(numerator) << 62) / scaled(denominator).max(1)) as i128
+}
+
+/// `value / 2^shift` rounded to nearest, which fits 64 bits.
+#[inline(always)]
+fn round_shift_wide(value: i128, shift: u32) -> i64 {
+    ((value + (1 << (shift - 1))) >> shift) as i64
 }
 
 /// The product of two numbers in [0, 2^127), as high and low halves: schoolbook, by 64-bit digits.

@@ -21,6 +21,7 @@ mod ray;
 mod resolve;
 mod settings;
 mod shading;
+mod sphere;
 #[cfg(test)]
 mod testing;
 mod triangle;
@@ -42,6 +43,7 @@ use crate::exact::{BoxNode, BoxNode29};
 use crate::kernel::{Bounds, Kernel, NONE, Surface, Vertices};
 use crate::num::Triple;
 use crate::space::{GridQ31, Space};
+use crate::sphere::{Ball, SphereRecord};
 
 /// The report's kernel, in one of its variants.
 #[derive(Clone, Copy, Debug, Default)]
@@ -71,6 +73,7 @@ impl<V: Variant> Kernel for Hanika<V> {
     const SPAN: i32 = (1 << GRID_BITS) - MARGIN;
     const DIRECTION_BITS: u32 = 31;
     const MATERIALS_MAX: u32 = triangle::MATERIALS_MAX;
+    const RADIUS_MIN: i32 = sphere::RADIUS_MIN;
 
     type Settings = Arithmetic;
     const KNOBS: &'static str = V::KNOBS;
@@ -79,6 +82,7 @@ impl<V: Variant> Kernel for Hanika<V> {
     type Word = i64;
     type Node = BoxNode29;
     type Triangle = TriangleRecord;
+    type Sphere = SphereRecord<i32>;
     type Ray = Ray<V::Slab>;
     type Distance = i32;
     type Depth = i32;
@@ -115,6 +119,22 @@ impl<V: Variant> Kernel for Hanika<V> {
     #[inline]
     fn material(triangle: &TriangleRecord) -> u32 {
         triangle.material()
+    }
+
+    fn sphere(ball: &Ball, material: u32) -> Option<SphereRecord<i32>> {
+        if !ball.fits::<Self>() || material > triangle::MATERIALS_MAX {
+            return None;
+        }
+        SphereRecord::new(ball, material)
+    }
+
+    fn ball(sphere: &SphereRecord<i32>) -> Ball {
+        sphere.ball::<i64>()
+    }
+
+    #[inline]
+    fn sphere_material(sphere: &SphereRecord<i32>) -> u32 {
+        sphere.material::<i64>()
     }
 
     #[inline]
@@ -169,6 +189,11 @@ impl<V: Variant> Kernel for Hanika<V> {
         triangle::intersect(ray, triangle)
     }
 
+    #[inline]
+    fn intersect_sphere(ray: &Self::Ray, sphere: &SphereRecord<i32>, leaves: bool) -> Option<i32> {
+        sphere::intersect(ray, sphere, leaves)
+    }
+
     #[inline(always)]
     fn limit(depth: &i32) -> i32 {
         *depth
@@ -192,5 +217,9 @@ impl<V: Variant> Kernel for Hanika<V> {
 
     fn resolve(ray: &Self::Ray, triangle: &TriangleRecord) -> Surface<GridQ31> {
         resolve::resolve(ray, triangle)
+    }
+
+    fn resolve_sphere(ray: &Self::Ray, sphere: &SphereRecord<i32>) -> Surface<GridQ31> {
+        sphere::resolve(ray, sphere)
     }
 }

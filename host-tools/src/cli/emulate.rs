@@ -241,7 +241,10 @@ fn help(board: &Board, scene: &Scene, header: &Header, sizes: &Sizes) -> String 
     let bytes = scene.blob.bytes().len() as u64;
     // In proportion, a fiftieth less for what does not shrink with the triangles.
     let fitting = triangles * u64::from(board.blob.length) / bytes * 49 / 50;
-    let mut help = vec![format!("fewer triangles (`intray prep --triangles {fitting}` instead of {triangles})")];
+    let mut help = Vec::new();
+    if triangles > 0 {
+        help.push(format!("fewer triangles (`intray prep --triangles {fitting}` instead of {triangles})"));
+    }
     if scene.engine.name() != "exact14" {
         help.push("the kernel exact14, whose records are the smallest".into());
     }

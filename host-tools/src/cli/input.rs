@@ -250,7 +250,7 @@ impl SceneArguments {
             .prepare(&model, &self.options())
             .map_err(|error| Failure::input(format!("{}: {error}", self.scene.display())))?;
         warn_of_degenerates(prepared.degenerates, model.triangles.len());
-        losses(engine.name(), engine.grid_bits(), &model, &prepared.grid).iter().for_each(warn);
+        losses(engine.name(), engine.grid_bits(), engine.radius_min(), &model, &prepared.grid).iter().for_each(warn);
         Ok(Scene { engine, blob: prepared.blob, degenerates: Some(prepared.degenerates) })
     }
 

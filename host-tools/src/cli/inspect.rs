@@ -33,6 +33,7 @@ struct Inspection {
     degenerate: u32,
     /// By cause; not known of a blob.
     degenerates: Option<Degenerates>,
+    spheres: u32,
     nodes: u32,
     depth: u8,
     materials: u32,
@@ -41,7 +42,7 @@ struct Inspection {
     width: u16,
     height: u16,
     blob_bytes: u64,
-    /// Nodes, triangles, vertices and ids; shading apart.
+    /// Nodes, triangles, vertices, spheres and ids, shading apart; of each triangle and sphere.
     bytes_per_triangle: f64,
     bytes: Sizes,
     needs: Vec<String>,
@@ -51,7 +52,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let scene = arguments.scene.load()?;
     let (header, sizes) = scene.engine.inspect(scene.blob.bytes())?;
     let counts = header.counts;
-    let geometry = sizes.nodes + sizes.triangles + sizes.ids;
+    let geometry = sizes.nodes + sizes.triangles + sizes.spheres + sizes.ids;
     let found = Inspection {
         kernel: scene.engine.name(),
         grid_bits: scene.engine.grid_bits(),
@@ -60,6 +61,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         triangles: counts.triangles,
         degenerate: header.file_triangles.saturating_sub(counts.triangles),
         degenerates: scene.degenerates,
+        spheres: counts.spheres,
         nodes: counts.nodes,
         depth: header.depth,
         materials: counts.materials,
@@ -68,7 +70,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         width: header.size[0],
         height: header.size[1],
         blob_bytes: scene.blob.bytes().len() as u64,
-        bytes_per_triangle: geometry as f64 / f64::from(counts.triangles),
+        bytes_per_triangle: geometry as f64 / (f64::from(counts.triangles) + f64::from(counts.spheres)),
         bytes: sizes,
         needs: header.needs.iter().map(|need| need.to_string()).collect(),
     };
@@ -82,18 +84,22 @@ impl Inspection {
             ("kernel", format!("{} ({}-bit grid{edge_shift})", self.kernel, self.grid_bits)),
             ("picture", format!("{}x{}", self.width, self.height)),
             ("triangles", format!("{} ({} degenerate ones left out)", self.triangles, self.degenerate)),
+            ("spheres", self.spheres.to_string()),
             ("tree", format!("{} nodes, {} levels", self.nodes, self.depth)),
             ("shading", format!("{} materials, {} lights, {} normals", self.materials, self.lights, self.normals)),
             ("needs", self.needs.join(", ")),
             ("blob", format!("{} bytes", self.blob_bytes)),
             ("  nodes", format!("{} bytes", self.bytes.nodes)),
             ("  triangles", format!("{} bytes", self.bytes.triangles)),
+            ("  spheres", format!("{} bytes", self.bytes.spheres)),
             ("  ids", format!("{} bytes", self.bytes.ids)),
             ("  normals", format!("{} bytes", self.bytes.normals)),
             ("  paint", format!("{} bytes, and {} of texels", self.bytes.paint, self.bytes.texels)),
             ("  shading", format!("{} bytes", self.bytes.shading)),
             ("a triangle", format!("{:.1} bytes of nodes, vertices and ids", self.bytes_per_triangle)),
         ];
-        rows.map(|(name, value)| format!("{name:<12} {value}")).join("\n")
+        let shown = |name: &str| self.spheres > 0 || name.trim() != "spheres";
+        let rows = rows.into_iter().filter(|(name, _)| shown(name));
+        rows.map(|(name, value)| format!("{name:<12} {value}")).collect::<Vec<_>>().join("\n")
     }
 }

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use core_rt::blob::Counts;
+
 use super::failure::Failure;
 use super::input::SceneArguments;
 use super::output;
@@ -24,10 +26,19 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     files::write_atomically(&arguments.output, scene.blob.bytes())?;
     let (header, _) = scene.engine.inspect(scene.blob.bytes())?;
     output::line(&format!(
-        "{}: {} bytes for {}, {} triangles",
+        "{}: {} bytes for {}, {}",
         arguments.output.display(),
         scene.blob.bytes().len(),
         scene.engine.name(),
-        header.counts.triangles
+        primitives(&header.counts)
     ))
+}
+
+/// How many triangles there are, and how many spheres if there are any.
+fn primitives(counts: &Counts) -> String {
+    match (counts.triangles, counts.spheres) {
+        (triangles, 0) => format!("{triangles} triangles"),
+        (0, spheres) => format!("{spheres} spheres"),
+        (triangles, spheres) => format!("{triangles} triangles, {spheres} spheres"),
+    }
 }

@@ -38,14 +38,17 @@ impl Blob {
 }
 
 /// What the tree's builder and the kernel made, in the order of the blob.
-pub(super) struct Parts<'a, N, T> {
+pub(super) struct Parts<'a, N, T, S> {
     pub(super) root: u32,
     pub(super) depth: u8,
     pub(super) arithmetic: Arithmetic,
     pub(super) nodes: N,
     pub(super) triangles: T,
+    pub(super) spheres: S,
     /// The file's number of each triangle.
     pub(super) ids: &'a [u32],
+    /// The file's number of each sphere, behind all triangles.
+    pub(super) sphere_ids: &'a [u32],
     pub(super) materials: &'a [Material],
     pub(super) lustres: &'a [Lustre],
     pub(super) checkers: &'a [Checker],
@@ -93,15 +96,22 @@ impl Writer {
 pub(super) fn write<K: Kernel>(
     model: &Model,
     grid: &Grid,
-    parts: Parts<'_, impl ExactSizeIterator<Item = K::Node>, impl ExactSizeIterator<Item = K::Triangle>>,
+    parts: Parts<
+        '_,
+        impl ExactSizeIterator<Item = K::Node>,
+        impl ExactSizeIterator<Item = K::Triangle>,
+        impl ExactSizeIterator<Item = K::Sphere>,
+    >,
 ) -> Result<Blob, PrepareError> {
     let (normals, corners) = normals::<K>(model, parts.ids);
     let lights: Vec<_> = model.lights.iter().map(|light| header::light(light, grid)).collect();
-    let wide_ids = model.triangles.len() > 1 << 16;
+    let wide_ids = model.triangles.len() + model.spheres.len() > 1 << 16;
+    let ids = [parts.ids, parts.sphere_ids].concat();
     // The largest index is kept for flat triangles.
     let wide_normals = normals.len() >= 1 << 16;
     let needs = header::needs(model, parts.materials, parts.lustres)
         .with(Need::SmoothNormals, !corners.is_empty())
+        .with(Need::Spheres, !parts.sphere_ids.is_empty())
         .with(Need::WideIds, wide_ids)
         .with(Need::WideNormals, wide_normals);
     let needs = parts.paint.needs(needs, model.render.filter);
@@ -122,6 +132,7 @@ pub(super) fn write<K: Kernel>(
         counts: Counts {
             nodes: parts.nodes.len() as u32,
             triangles: parts.triangles.len() as u32,
+            spheres: parts.spheres.len() as u32,
             smooth: corners.len() as u32 / 3,
             normals: normals.len() as u32,
             paint: parts.paint.counts(),
@@ -131,6 +142,7 @@ pub(super) fn write<K: Kernel>(
             lights: lights.len() as u32,
         },
         file_triangles: model.triangles.len() as u32,
+        file_spheres: model.spheres.len() as u32,
         arithmetic: parts.arithmetic,
         source: SourceGrid { origin_bits: grid.origin.to_array().map(f64::to_bits), scale_bits: grid.scale.to_bits() },
     };
@@ -141,7 +153,8 @@ pub(super) fn write<K: Kernel>(
         encoded.len(),
         parts.nodes.len() * size_of::<K::Node>(),
         parts.triangles.len() * size_of::<K::Triangle>(),
-        parts.ids.len() * integer(wide_ids),
+        parts.spheres.len() * size_of::<K::Sphere>(),
+        ids.len() * integer(wide_ids),
         corners.len() * integer(wide_normals),
         size_of_val(normals.as_slice()),
         parts.paint.uv_indices.len() * integer(wide_uvs),
@@ -173,7 +186,8 @@ pub(super) fn write<K: Kernel>(
     writer.records(encoded.into_iter());
     writer.records(parts.nodes);
     writer.records(parts.triangles);
-    writer.integers(parts.ids, wide_ids);
+    writer.records(parts.spheres);
+    writer.integers(&ids, wide_ids);
     writer.integers(&corners, wide_normals);
     writer.records(normals.into_iter());
     writer.integers(&parts.paint.uv_indices, wide_uvs);

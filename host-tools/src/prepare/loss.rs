@@ -7,7 +7,7 @@ use core_rt::kernel::{Kernel, Vertices};
 use core_rt::num::{cross, sub};
 
 use crate::grid::Grid;
-use crate::model::Model;
+use crate::model::{Model, Sphere};
 
 /// Of so many triangles one may collapse without a word. One that does is thinner than a step of the grid, and its neighbours
 /// close over it; where more do, they are neighbours, and shapes vanish.
@@ -17,13 +17,13 @@ const ONE_OF: u32 = 100;
 /// quarter of a pixel in a picture 1024 wide.
 const FEW_BITS: u32 = 12;
 
-/// A kernel that keeps some triangles where another keeps none.
+/// A kernel that keeps some triangles or spheres where another keeps none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Keeper {
     /// Its name.
     pub kernel: &'static str,
-    /// How many have an area on its grid.
-    pub triangles: u32,
+    /// How many have a size on its grid.
+    pub kept: u32,
 }
 
 /// Something of a scene that is lost on a kernel's grid. One line of text.
@@ -35,6 +35,15 @@ pub enum Loss {
         share: [u32; 2],
         /// The materials of which nothing is left.
         materials: Vec<String>,
+        /// The kernel.
+        kernel: &'static str,
+        /// Who keeps more, and how many it would lose.
+        keeper: Option<(&'static str, u32)>,
+    },
+    /// Spheres whose radius is less than the kernel's least.
+    Spheres {
+        /// How many of how many.
+        share: [u32; 2],
         /// The kernel.
         kernel: &'static str,
         /// Who keeps more, and how many it would lose.
@@ -63,11 +72,11 @@ impl fmt::Display for Loss {
                 if materials.len() > 3 {
                     write!(f, " and {} more", materials.len() - 3)?;
                 }
-                match keeper {
-                    Some((keeper, 0)) => write!(f, "; {keeper} keeps them all"),
-                    Some((keeper, lost)) => write!(f, "; {keeper} keeps all but {lost}"),
-                    None => write!(f, ", and no kernel keeps more; make what is large smaller, or leave it out"),
-                }
+                write_keeper(f, *keeper)
+            }
+            Self::Spheres { share: [lost, all], kernel, keeper } => {
+                write!(f, "{lost} of {all} spheres are too small for the grid of {kernel} and were left out")?;
+                write_keeper(f, *keeper)
             }
             Self::Bits { left: [left, all], kernel, keeper } => {
                 write!(
@@ -84,6 +93,14 @@ impl fmt::Display for Loss {
     }
 }
 
+fn write_keeper(f: &mut fmt::Formatter<'_>, keeper: Option<(&'static str, u32)>) -> fmt::Result {
+    match keeper {
+        Some((keeper, 0)) => write!(f, "; {keeper} keeps them all"),
+        Some((keeper, lost)) => write!(f, "; {keeper} keeps all but {lost}"),
+        None => write!(f, ", and no kernel keeps more; make what is large smaller, or leave it out"),
+    }
+}
+
 /// What a kernel's grid makes of a model.
 struct Survey {
     kernel: &'static str,
@@ -91,6 +108,10 @@ struct Survey {
     triangles: u32,
     /// Those of them that have none on the grid.
     lost: u32,
+    /// Spheres.
+    spheres: u32,
+    /// Those of them that are too small for the grid.
+    lost_spheres: u32,
     /// Materials, by number, of which nothing is left.
     materials: Vec<usize>,
     /// Bits of the geometry.
@@ -98,7 +119,13 @@ struct Survey {
 }
 
 impl Survey {
-    fn of(kernel: &'static str, model: &Model, grid: &Grid) -> Self {
+    fn of(kernel: &'static str, radius_min: i32, model: &Model, grid: &Grid) -> Self {
+        let is_kept = |sphere: &&Sphere| grid.ball(sphere).radius >= radius_min;
+        let mut of_spheres = vec![false; model.materials.len()];
+        for sphere in model.spheres.iter().filter(is_kept) {
+            of_spheres[sphere.material as usize] = true;
+        }
+        let spheres = model.spheres.len() as u32;
         let mut counts = vec![[0u32; 2]; model.materials.len()];
         for (triangle, corners) in model.triangles.iter().zip(grid.snap(model).iter()) {
             let [a, b, c] = triangle.vertices.map(|v| model.positions[v as usize]);
@@ -112,14 +139,20 @@ impl Survey {
             kernel,
             triangles: counts.iter().map(|[all, _]| all).sum(),
             lost: counts.iter().map(|[_, lost]| lost).sum(),
-            materials: (0..).zip(&counts).filter(|(_, [all, lost])| *all > 0 && all == lost).map(|(i, _)| i).collect(),
+            spheres,
+            lost_spheres: spheres - model.spheres.iter().filter(is_kept).count() as u32,
+            materials: (0..)
+                .zip(&counts)
+                .filter(|&(i, [all, lost])| *all > 0 && all == lost && !of_spheres[i])
+                .map(|(i, _)| i)
+                .collect(),
             bits: grid.bits(model),
         }
     }
 
     /// The same on the kernel's own grid; `None` where it has none for the model.
     fn on_grid_of<K: Kernel>(model: &Model) -> Option<Self> {
-        Some(Self::of(K::NAME, model, &Grid::fit::<K>(model).ok()?))
+        Some(Self::of(K::NAME, K::RADIUS_MIN, model, &Grid::fit::<K>(model).ok()?))
     }
 
     fn loses_shapes(&self) -> bool {
@@ -155,10 +188,11 @@ fn keeper(surveys: impl Iterator<Item = Survey>, enough: impl Fn(&Survey) -> boo
     last
 }
 
-/// What of a model is lost on the grid that a kernel of this name, with so many bits for coordinates, has for it.
+/// What of a model is lost on the grid that a kernel of this name, with so many bits for coordinates and no smaller radii,
+/// has for it.
 #[must_use]
-pub fn losses(kernel: &'static str, grid_bits: u32, model: &Model, grid: &Grid) -> Vec<Loss> {
-    let own = Survey::of(kernel, model, grid);
+pub fn losses(kernel: &'static str, grid_bits: u32, radius_min: i32, model: &Model, grid: &Grid) -> Vec<Loss> {
+    let own = Survey::of(kernel, radius_min, model, grid);
     let mut losses = Vec::new();
     if own.bits < FEW_BITS {
         let keeper = keeper(finer(grid_bits, model), |survey| survey.bits >= FEW_BITS);
@@ -177,13 +211,22 @@ pub fn losses(kernel: &'static str, grid_bits: u32, model: &Model, grid: &Grid) 
             keeper: keeper.filter(|survey| survey.lost < own.lost).map(|survey| (survey.kernel, survey.lost)),
         });
     }
+    if own.lost_spheres > 0 {
+        let keeper = keeper(finer(grid_bits, model), |survey| survey.lost_spheres == 0);
+        let keeper = keeper.filter(|survey| survey.lost_spheres < own.lost_spheres);
+        losses.push(Loss::Spheres {
+            share: [own.lost_spheres, own.spheres],
+            kernel,
+            keeper: keeper.map(|survey| (survey.kernel, survey.lost_spheres)),
+        });
+    }
     losses
 }
 
-/// The first kernel with a finer grid that keeps some triangles of a model, and how many.
+/// The first kernel with a finer grid that keeps some triangles or spheres of a model, and how many.
 pub(super) fn keeps_some(grid_bits: u32, model: &Model) -> Option<Keeper> {
-    let kept = |survey: &Survey| survey.triangles - survey.lost;
+    let kept = |survey: &Survey| survey.triangles - survey.lost + survey.spheres - survey.lost_spheres;
     finer(grid_bits, model)
         .find(|survey| kept(survey) > 0)
-        .map(|survey| Keeper { kernel: survey.kernel, triangles: kept(&survey) })
+        .map(|survey| Keeper { kernel: survey.kernel, kept: kept(&survey) })
 }

@@ -24,6 +24,8 @@ pub struct Measured {
 pub trait Measure: Kernel {
     /// The hit of a ray with a triangle; `None` where there is none.
     fn measure(ray: &Self::Ray, triangle: &Self::Triangle) -> Option<Measured>;
+    /// The hit of a ray with a sphere that it does not start on; `None` where there is none.
+    fn measure_sphere(ray: &Self::Ray, sphere: &Self::Sphere) -> Option<Measured>;
 }
 
 /// Exact fractions, each within 3 roundings of f64.
@@ -42,6 +44,13 @@ impl<W: Width<Word: Into<i64>, Wide: Into<i128>>> Measure for Exact<W> {
             u: ratio(dot(e2, r)),
             v: ratio(dot(e1, r)),
         })
+    }
+
+    fn measure_sphere(ray: &Self::Ray, sphere: &Self::Sphere) -> Option<Measured> {
+        let depth = Self::intersect_sphere(ray, sphere, false)?;
+        let direction = DVec3::from_array(ray.direction.map(|c| c.into() as f64));
+        let (numerator, denominator): (i128, i128) = (depth.numerator.into(), depth.denominator.into());
+        Some(Measured { t: numerator as f64 / denominator as f64, direction, u: 0.0, v: 0.0 })
     }
 }
 
@@ -64,6 +73,12 @@ impl<V: Variant> Measure for Hanika<V> {
             v: q31(surface.v.to_bits().into()),
         })
     }
+
+    fn measure_sphere(ray: &Self::Ray, sphere: &Self::Sphere) -> Option<Measured> {
+        let t = Self::intersect_sphere(ray, sphere, false)?;
+        let direction = DVec3::from_array(ray.direction.map(|c| libm::ldexp(c as f64, -31)));
+        Some(Measured { t: t.into(), direction, u: 0.0, v: 0.0 })
+    }
 }
 
 /// The kernel's own numbers.
@@ -77,5 +92,10 @@ impl<F: Format + Into<f64>> Measure for Float<F> {
             u: surface.u.into(),
             v: surface.v.into(),
         })
+    }
+
+    fn measure_sphere(ray: &Self::Ray, sphere: &Self::Sphere) -> Option<Measured> {
+        let t = Self::intersect_sphere(ray, sphere, false)?;
+        Some(Measured { t: t.into(), direction: DVec3::from_array(ray.direction.map(Into::into)), u: 0.0, v: 0.0 })
     }
 }

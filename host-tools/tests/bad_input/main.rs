@@ -14,4 +14,5 @@ mod pictures;
 mod rays;
 mod scene_files;
 mod scene_toml;
+mod spheres;
 mod textures;

@@ -163,37 +163,35 @@ fn materials_that_cannot_be() {
     }
 }
 
-/// What the reference draws and no kernel does yet is refused where the picture would be of another scene.
+/// Lights and cameras where they hardly can be, and surfaces that show nothing of their own: never a silent black picture.
 #[test]
-fn what_kernels_do_not_have() {
-    for (lines, message) in [
-        ("[[sphere]]\ncentre = [0, 0, 0]\nradius = 1", "spheres are not supported yet by any kernel; use a mesh"),
-        ("[[light]]\nposition = [0, 0, 3]\nfalloff = 'inverse-square'\nreach = 1", {
-            "inverse-square falloff is not supported yet by any kernel; use \"none\""
-        }),
-        ("[background]\nsky = [[0, 0, 0], [1, 1, 1]]", {
-            "sky is not supported yet by any kernel; give a background colour"
-        }),
-    ] {
-        refused(lines, &format!(" {message}"));
-    }
-}
-
-/// And said where it is the same scene, drawn more plainly; never in black.
-#[test]
-fn what_kernels_draw_more_plainly() {
-    for (lines, what) in [
-        ("[material.default]\nkind = 'mirror'", "material `default` is drawn as Lambert; not supported yet: mirror"),
-        ("[material.default]\nkind = 'dielectric'\nweights = [0, 0.5, 0.1, 0.8]", {
-            "material `default` is drawn as Lambert; not supported yet: dielectric, transparency, weights"
-        }),
+fn what_is_asked_for_is_drawn() {
+    const SPHERE: &str = "[[sphere]]\ncentre = [0, 0, 0]\nradius = 1\nmaterial = 'default'\n";
+    for lines in [
+        "[camera]\nprojection = 'orthographic'\nheight = 3",
+        "[[light]]\nposition = [0.2, 0.2, 3]\nfalloff = 'inverse-square'\nreach = 3",
+        "[background]\nsky = [[0, 0, 0], [1, 1, 1]]",
+        "[material.default]\nkind = 'mirror'\n[background]\ncolour = [1, 1, 1]",
+        "[material.default]\nkind = 'dielectric'\nweights = [0, 0.5, 0.1, 0.8]\n[background]\ncolour = [1, 1, 1]",
+        // A light inside a surface, in it, and at the camera.
+        "[[sphere]]\ncentre = [0, 0, 0]\nradius = 1\nmaterial = 'default'\n[[light]]\nposition = [0, 0, 0]\n[render]\nambient = [0.5, 0.5, 0.5]",
+        "[[light]]\nposition = [0.25, 0.25, 0]\n[render]\nambient = [0.5, 0.5, 0.5]",
+        "[camera]\nposition = [0, 0, 3]\nlook_at = [0.2, 0.2, 0]\n[[light]]\nposition = [0, 0, 3]\nfalloff = 'inverse-square'\nreach = 2",
+        // A camera inside glass.
+        "[[sphere]]\ncentre = [0, 0, 3]\nradius = 1\nmaterial = 'default'\n[camera]\nposition = [0, 0, 3.2]\nlook_at = [0.2, 0.2, 0]\n\
+         [material.default]\nkind = 'dielectric'\nior = 1.5\n[background]\ncolour = [1, 1, 1]",
     ] {
         let folder = Folder::with_triangle();
         folder.write("scene.toml", format!("model = 'scene.obj'\n{lines}\n").as_bytes());
-        folder.succeeds("render scene.toml --size 9x7 -o out.png", &format!("warning: scene.toml: {what}\n"));
-        let picture = Picture::read_png(&folder.path("out.png")).unwrap();
-        assert!(picture.pixels().iter().any(|pixel| *pixel > [100; 3]), "{lines}");
+        for kernel in ["exact14", "exact29", "hanika-cons", "f32"] {
+            folder.succeeds(&format!("render scene.toml --size 9x7 --kernel {kernel} -o out.png"), "");
+            let picture = Picture::read_png(&folder.path("out.png")).unwrap();
+            assert!(picture.pixels().iter().any(|pixel| *pixel > [100; 3]), "{lines}");
+        }
     }
+    let folder = Folder::with_triangle();
+    folder.write("scene.toml", format!("{SPHERE}[material.default]\nkind = 'metal'\n").as_bytes());
+    folder.succeeds("render scene.toml --size 9x7 -o out.png", "");
 }
 
 /// A sphere of a material that nothing defines is grey, and one that is the whole scene needs no OBJ.
@@ -201,9 +199,11 @@ fn what_kernels_draw_more_plainly() {
 fn spheres_alone() {
     let folder = Folder::with_triangle();
     folder.write("scene.toml", b"[[sphere]]\ncentre = [0, 0, 0]\nradius = 1\nmaterial = 'gold'\n");
-    folder.refuses(
-        "inspect scene.toml",
-        "warning: scene.toml:4: materials that no table defines, drawn in grey (Kd 0.8): `gold`\n\
-         error: scene.toml: spheres are not supported yet by any kernel; use a mesh\n",
-    );
+    let warning = "warning: scene.toml:4: materials that no table defines, drawn in grey (Kd 0.8): `gold`\n";
+    for kernel in ["exact14", "exact29", "hanika-cons", "f32"] {
+        for line in ["inspect scene.toml", "prep scene.toml -o out.blob", "render scene.toml -o out.png --size 8x6"] {
+            folder.succeeds(&format!("{line} --kernel {kernel}"), warning);
+        }
+    }
+    folder.succeeds("inspect out.blob", "");
 }

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use glam::DVec3;
-use host_tools::model::{Background, Format, LightKind, Model, Projection, Transfer};
+use host_tools::model::{self, Background, Format, LightKind, Material, Model, Projection, Transfer};
 
 use crate::looks;
 use crate::reader::{Blob, Bounds, Radiance};
@@ -36,6 +36,7 @@ pub(crate) fn agree(blob: &Blob, model: &Model) -> Checked {
     tree(blob)?;
     origins(blob)?;
     triangles(blob, model)?;
+    spheres(blob, model)?;
     normals(blob, model)?;
     shading(blob, model)
 }
@@ -60,17 +61,23 @@ fn header(blob: &Blob, model: &Model) -> Checked {
     let any_kind = |point: bool| model.lights.iter().any(|l| matches!(l.kind, LightKind::Point(_)) == point);
     let smooth = model.triangles.iter().any(|t| t.normals.is_some());
     let linear = model.render.transfer == Transfer::Linear;
+    let used = model.triangles.iter().map(|t| t.material).chain(model.spheres.iter().map(|s| s.material));
     let needs = [
         any_kind(true),
         any_kind(false),
         !model.lights.is_empty(),
         smooth,
-        model.triangles.iter().any(|t| model.materials[t.material as usize].emission != DVec3::ZERO),
+        used.clone().any(|m| model.materials[m as usize].emission != DVec3::ZERO),
         model.render.ambient != DVec3::ZERO,
         !linear,
         linear,
-        model.triangles.len() > 65_536,
+        model.triangles.len() + model.spheres.len() > 65_536,
         blob.normals.len() >= 65_536,
+        false,
+        false,
+        false,
+        false,
+        !blob.spheres.is_empty(),
     ];
     let needs = needs.iter().rev().fold(0, |bits, &need| bits << 1 | u32::from(need))
         | looks::needs(blob, model)
@@ -88,6 +95,7 @@ fn header(blob: &Blob, model: &Model) -> Checked {
     rule(header.size == model.render.size.map(u64::from), "size")?;
     rule(header.transfer == u64::from(linear), "transfer")?;
     rule(header.file_triangles == model.triangles.len() as u64, "triangles in the file")?;
+    rule(header.file_spheres == model.spheres.len() as u64, "spheres in the file")?;
     rule(header.arithmetic == [0; 4], "arithmetic")?;
     rule(blob.corners.len() == if smooth { blob.triangles.len() } else { 0 }, "smooth")?;
     let [bottom, top] = match model.background {
@@ -174,27 +182,36 @@ fn camera(blob: &Blob, model: &Model) -> Checked {
 
 fn tree(blob: &Blob) -> Checked {
     let (least, most) = blob.kernel.vertices;
-    let mut next = (0, 0);
+    let (nodes, triangles) = (blob.nodes.len(), blob.triangles.len());
+    let mut next = [0, 0, triangles];
     let levels = subtree(blob, blob.header.root, Bounds { low: [least; 3], high: [most; 3] }, &mut next)?;
-    rule(next == (blob.nodes.len(), blob.triangles.len()), "nodes or triangles are left over")?;
+    rule(next == [nodes, triangles, triangles + blob.spheres.len()], "nodes or primitives are left over")?;
     rule(levels == u32::from(blob.header.depth) && levels <= 64, "depth")
 }
 
-/// Checks a subtree against the next free node and triangle; its levels.
-fn subtree(blob: &Blob, word: u32, holder: Bounds, next: &mut (usize, usize)) -> Result<u32, String> {
+/// Checks a subtree against the next free node, triangle and sphere; its levels.
+fn subtree(blob: &Blob, word: u32, holder: Bounds, next: &mut [usize; 3]) -> Result<u32, String> {
     let inside = |low: [i64; 3], high: [i64; 3]| {
         (0..3).all(|axis| holder.low[axis] <= low[axis] && high[axis] <= holder.high[axis])
     };
     if word >> 31 == 1 {
         let (count, first) = ((word >> 25 & 63) as usize + 1, (word & 0x1ff_ffff) as usize);
-        rule(first == next.1, "order of triangles")?;
-        next.1 += count;
+        if let Some(number) = first.checked_sub(blob.triangles.len()) {
+            rule(first == next[2], "order of spheres")?;
+            next[2] += count;
+            let run = blob.spheres.get(number..number + count).ok_or("a leaf beyond the spheres")?;
+            let boxes = run.iter().map(|s| (s.centre.map(|c| c - s.radius), s.centre.map(|c| c + s.radius)));
+            rule(boxes.into_iter().all(|(low, high)| inside(low, high)), "a sphere outside its leaf's box")?;
+            return Ok(0);
+        }
+        rule(first == next[1], "order of triangles")?;
+        next[1] += count;
         let run = blob.triangles.get(first..first + count).ok_or("a leaf beyond the triangles")?;
         rule(run.iter().flat_map(|t| t.vertices).all(|v| inside(v, v)), "a vertex outside its leaf's box")?;
         return Ok(0);
     }
-    rule(word as usize == next.0, "order of nodes")?;
-    next.0 += 1;
+    rule(word as usize == next[0], "order of nodes")?;
+    next[0] += 1;
     let node = *blob.nodes.get(word as usize).ok_or("a reference beyond the nodes")?;
     let mut levels = 0;
     for (bounds, child) in node.boxes.into_iter().zip(node.children) {
@@ -222,7 +239,9 @@ fn origins(blob: &Blob) -> Checked {
         }
     }
     for origin in all {
-        let mut differences = blob.triangles.iter().flat_map(|t| t.vertices).flat_map(|vertex| minus(vertex, origin));
+        let vertices = blob.triangles.iter().flat_map(|t| t.vertices);
+        let ends = blob.spheres.iter().flat_map(|s| [-s.radius, s.radius].map(|r| s.centre.map(|c| c + r)));
+        let mut differences = vertices.chain(ends).flat_map(|point| minus(point, origin));
         rule(differences.all(|difference| difference.abs() <= blob.kernel.span), "span")?;
     }
     Ok(())
@@ -243,16 +262,43 @@ fn triangles(blob: &Blob, model: &Model) -> Checked {
         let k = (2 * b).saturating_sub(kernel.normal_bits);
         rule(triangle.n == normal.map(|c| c >> k), "n")?;
         rule(triangle.material <= kernel.material_most, "range of materials")?;
-        let material = blob.materials.get(triangle.material as usize).ok_or("a material that is not there")?;
-        let meant = &model.materials[source.material as usize];
-        rule(is_light(&material.emission, meant.emission), "emission")?;
+        material(blob, triangle.material, &model.materials[source.material as usize])?;
     }
     let present: HashSet<u32> = blob.ids.iter().copied().collect();
     rule(present.len() == blob.ids.len(), "ids are not distinct")?;
+    rule(blob.ids.len() == blob.triangles.len() + blob.spheres.len(), "an id for each")?;
     for (id, triangle) in (0..).zip(&model.triangles) {
         let [a, b, c] = triangle.vertices.map(|v| place(blob, model.positions[v as usize]));
         let has_area = cross(minus(b, a), minus(c, a)) != [0; 3];
         rule(present.contains(&id) == has_area, "triangles with area are there, and no others")?;
+    }
+    Ok(())
+}
+
+fn material(blob: &Blob, number: u32, meant: &Material) -> Checked {
+    let material = blob.materials.get(number as usize).ok_or("a material that is not there")?;
+    rule(is_light(&material.emission, meant.emission), "emission")
+}
+
+fn spheres(blob: &Blob, model: &Model) -> Checked {
+    let kernel = blob.kernel;
+    let of_file = |sphere: &model::Sphere| {
+        let radius = (sphere.radius * blob.header.scale + 0.5).floor() as i64;
+        (place(blob, sphere.centre), radius)
+    };
+    let ids = &blob.ids[blob.triangles.len()..];
+    for (sphere, &id) in blob.spheres.iter().zip(ids) {
+        let number = (id as usize).checked_sub(model.triangles.len()).ok_or("a sphere with a triangle's id")?;
+        let source = model.spheres.get(number).ok_or("an id beyond the file")?;
+        rule((sphere.centre, sphere.radius) == of_file(source), "centre and radius")?;
+        let ends = [-sphere.radius, sphere.radius].map(|r| sphere.centre.map(|c| c + r));
+        rule(within(ends.as_flattened(), kernel.vertices), "range of spheres")?;
+        rule(sphere.material <= kernel.material_most, "range of materials")?;
+        material(blob, sphere.material, &model.materials[source.material as usize])?;
+    }
+    for (number, sphere) in model.spheres.iter().enumerate() {
+        let is_there = ids.contains(&((model.triangles.len() + number) as u32));
+        rule(is_there == (of_file(sphere).1 >= kernel.radius_least), "spheres with room are there, and no others")?;
     }
     Ok(())
 }

@@ -13,7 +13,9 @@ const REFRACTED: usize = 3;
 const SHADOW: usize = 4;
 
 fn used(model: &Model) -> impl Iterator<Item = &Material> {
-    let used = |&number: &usize| model.triangles.iter().any(|t| t.material as usize == number);
+    let of_triangles = |number| model.triangles.iter().any(|t| t.material as usize == number);
+    let used =
+        move |&number: &usize| of_triangles(number) || model.spheres.iter().any(|s| s.material as usize == number);
     (0..model.materials.len()).filter(used).map(|number| &model.materials[number])
 }
 
@@ -68,9 +70,12 @@ pub(crate) fn agree(blob: &Blob, model: &Model) -> Checked {
     let reflects = used(model).any(|m| weights(m)[2..].iter().any(|&share| share > 0.0));
     let depth = if reflects { model.render.max_depth.min(64) } else { 0 };
     rule(u32::from(blob.header.max_depth) == depth, "depth of reflections")?;
-    for (triangle, &id) in blob.triangles.iter().zip(&blob.ids) {
-        let meant = &model.materials[model.triangles[id as usize].material as usize];
-        let found = &blob.materials[triangle.material as usize];
+    let triangles =
+        blob.triangles.iter().zip(&blob.ids).map(|(t, &id)| (t.material, model.triangles[id as usize].material));
+    let sphere_ids = blob.ids[blob.triangles.len()..].iter().map(|&id| id as usize - model.triangles.len());
+    let spheres = blob.spheres.iter().zip(sphere_ids).map(|(s, id)| (s.material, model.spheres[id].material));
+    for (number, source) in triangles.chain(spheres) {
+        let (found, meant) = (&blob.materials[number as usize], &model.materials[source as usize]);
         rule(colour(found.albedo, meant.colour * weights(meant)[0], 0), "albedo")?;
         match (usize::from(found.lustre), usize::from(found.checker)) {
             (0, _) => rule(is_matt(meant), "a matt surface")?,

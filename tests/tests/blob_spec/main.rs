@@ -12,7 +12,7 @@ use std::path::Path;
 use glam::DVec3;
 use host_tools::engine;
 use host_tools::import::{self, Embedded, load_from};
-use host_tools::model::{Filter, Format, Light, LightKind, Lobe, Model, Projection, Transfer, Triangle};
+use host_tools::model::{Filter, Format, Light, LightKind, Lobe, Model, Projection, Sphere, Transfer, Triangle};
 use host_tools::prepare::{Options, Prepared};
 use painted::is_painted;
 use reader::{Blob, crc32, read};
@@ -36,12 +36,10 @@ fn flat() -> Model {
     model
 }
 
-/// One of the gallery, of what is said of triangles.
+/// One of the gallery.
 fn gallery(name: &str) -> Model {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenes/gallery/{name}/scene.toml"));
-    let mut model = import::load(&path).unwrap().model;
-    model.spheres.clear();
-    model
+    import::load(&path).unwrap().model
 }
 
 /// The same by parallel rays that start in the midst of it, several a pixel, in 16 bits.
@@ -79,6 +77,28 @@ fn carpet(n: u32) -> Model {
     model
 }
 
+/// The built-in scene among spheres, one of them too small for any grid; or these alone.
+fn with_spheres(alone: bool) -> Model {
+    let mut model = if alone { flat() } else { built_in() };
+    let (low, high) = model
+        .positions
+        .iter()
+        .fold((model.positions[0], model.positions[0]), |(low, high), &p| (low.min(p), high.max(p)));
+    let size = (high - low).max_element();
+    if alone {
+        model.triangles.clear();
+        model.positions.clear();
+        model.normals.clear();
+    }
+    let sphere = |i: u32| {
+        let share = DVec3::new(f64::from(i % 3), f64::from(i % 4), f64::from(i % 5)) / 5.0;
+        let radius = if i == 7 { 1e-12 } else { size * f64::from(i + 1) / 100.0 };
+        Sphere { centre: low + (high - low) * share, radius, material: i % model.materials.len() as u32 }
+    };
+    model.spheres = (0..30).map(sphere).collect();
+    model
+}
+
 fn prepare(model: &Model, kernel: &str) -> Prepared {
     engine::by_name(kernel).unwrap().prepare(model, &Options::default()).unwrap()
 }
@@ -109,7 +129,7 @@ fn what_goes_in_is_read_by_the_document() {
 fn looks_are_read_by_the_document() {
     let mut seen = 0;
     for kernel in KERNELS {
-        for name in ["materials", "glass", "mirrors"] {
+        for name in ["materials", "glass", "mirrors", "spheres"] {
             let mut model = gallery(name);
             model.materials.iter_mut().for_each(|m| m.tinted_shadow |= name == "glass");
             let shiny = model.materials.iter_mut().filter_map(|m| m.specular.as_mut());
@@ -141,6 +161,33 @@ fn looks_are_read_by_the_document() {
     }
     for bit in [10, 11, 12, 13, 15, 16, 17, 18, 28] {
         assert!(seen >> bit & 1 == 1, "no scene of these has need {bit}");
+    }
+}
+
+#[test]
+fn spheres_are_read_by_the_document() {
+    for kernel in KERNELS {
+        for alone in [false, true] {
+            let model = with_spheres(alone);
+            let (Prepared { degenerates, .. }, found) = (prepare(&model, kernel), prepared(&model, kernel));
+            assert_eq!(agree(&found, &model), Ok(()), "{kernel}");
+            assert_eq!((degenerates.spheres, found.spheres.len()), (1, 29), "{kernel}");
+            let fault = |change: &dyn Fn(&mut Blob, &mut Model)| {
+                let (mut other, mut model) = (found.clone(), model.clone());
+                change(&mut other, &mut model);
+                agree(&other, &model).unwrap_err()
+            };
+            let first = found.triangles.len();
+            assert_eq!(fault(&|_, m| m.spheres[3].centre.y += 0.01), "centre and radius");
+            assert_eq!(fault(&|b, _| b.spheres[4].radius -= 1), "centre and radius");
+            assert_eq!(fault(&|b, _| b.spheres[5].material = 1 << 20), {
+                if kernel == "exact14" { "range of materials" } else { "a material that is not there" }
+            });
+            assert_eq!(fault(&|b, _| b.ids[first + 1] = b.header.file_triangles as u32 + 30), "an id beyond the file");
+            assert_eq!(fault(&|b, _| b.ids.swap(first, first + 1)), "centre and radius");
+            assert_eq!(fault(&|_, m| m.spheres[7].radius = 1.0), "spheres with room are there, and no others");
+            assert_eq!(fault(&|b, _| b.header.file_spheres += 1), "spheres in the file");
+        }
     }
 }
 

@@ -7,6 +7,7 @@ pub(crate) struct Kernel {
     /// Of a plane and of a triangle's field, bytes.
     pub(crate) short: usize,
     pub(crate) vertices: (i64, i64),
+    pub(crate) radius_least: i64,
     pub(crate) span: i64,
     pub(crate) direction_bits: u32,
     pub(crate) fraction_bits_most: u8,
@@ -24,6 +25,7 @@ pub(crate) const EXACT14: Kernel = Kernel {
     id: 14,
     short: 2,
     vertices: (4, (1 << 15) - 5),
+    radius_least: 2,
     span: (1 << 15) - 4,
     direction_bits: 13,
     fraction_bits_most: 17,
@@ -39,6 +41,7 @@ pub(crate) const EXACT29: Kernel = Kernel {
     id: 29,
     short: 4,
     vertices: (8, (1 << 29) - 9),
+    radius_least: 2,
     span: (1 << 29) - 8,
     direction_bits: 31,
     fraction_bits_most: 30,
@@ -75,9 +78,11 @@ pub(crate) struct Header {
     pub(crate) root: u32,
     pub(crate) depth: u8,
     pub(crate) max_depth: u8,
-    /// Nodes, triangles, smooth, normals, texture coordinates, colours, bytes of texels, materials, lustres, checkers, lights.
-    pub(crate) counts: [usize; 11],
+    /// Nodes, triangles, spheres, smooth, normals, texture coordinates, colours, bytes of texels, materials, lustres, checkers,
+    /// lights.
+    pub(crate) counts: [usize; 12],
     pub(crate) file_triangles: u64,
+    pub(crate) file_spheres: u64,
     /// C, D, E, epsilon.
     pub(crate) arithmetic: [u8; 4],
     pub(crate) origin: [f64; 3],
@@ -103,6 +108,13 @@ pub(crate) struct Triangle {
     pub(crate) edges: [[i64; 3]; 2],
     pub(crate) n: [i64; 3],
     pub(crate) shift: u32,
+    pub(crate) material: u32,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sphere {
+    pub(crate) centre: [i64; 3],
+    pub(crate) radius: i64,
     pub(crate) material: u32,
 }
 
@@ -163,6 +175,7 @@ pub(crate) struct Blob {
     pub(crate) header: Header,
     pub(crate) nodes: Vec<Node>,
     pub(crate) triangles: Vec<Triangle>,
+    pub(crate) spheres: Vec<Sphere>,
     pub(crate) ids: Vec<u32>,
     /// `None` for a flat triangle; empty for a flat scene.
     pub(crate) corners: Vec<Option<[u32; 3]>>,
@@ -268,8 +281,9 @@ impl Cursor<'_> {
             max_depth: self.unsigned(1) as u8,
             root: self.varint(32) as u32,
             depth: self.unsigned(1) as u8,
-            counts: [(); 11].map(|()| self.varint(32) as usize),
+            counts: [(); 12].map(|()| self.varint(32) as usize),
             file_triangles: self.varint(32),
+            file_spheres: self.varint(32),
             arithmetic: [(); 4].map(|()| self.unsigned(1) as u8),
             origin: self.three(|c| f64::from_bits(c.varint(64))),
             scale: f64::from_bits(self.varint(64)),
@@ -316,13 +330,18 @@ pub(crate) fn read(bytes: &[u8]) -> Blob {
     assert_eq!(cursor.at, 24 + header_size, "header size");
     cursor.pad();
 
-    let [node_count, triangle_count, smooth, normal_count, ..] = header.counts;
+    let [node_count, triangle_count, sphere_count, smooth, normal_count, ..] = header.counts;
     let [.., uv_count, colour_count, texel_count, material_count, lustre_count, checker_count, light_count] =
         header.counts;
     let wide = |bit: u32| if header.needs >> bit & 1 == 1 { 4 } else { 2 };
     let nodes = cursor.section(node_count, |c| c.node(kernel));
     let triangles = cursor.section(triangle_count, |c| c.triangle(kernel));
-    let ids = cursor.section(triangle_count, |c| c.unsigned(wide(8)) as u32);
+    let spheres = cursor.section(sphere_count, |c| Sphere {
+        centre: c.three(|c| c.signed(kernel.short)),
+        radius: c.signed(kernel.short),
+        material: c.unsigned(kernel.short) as u32,
+    });
+    let ids = cursor.section(triangle_count + sphere_count, |c| c.unsigned(wide(8)) as u32);
     let flat = if wide(9) == 4 { u32::MAX } else { u16::MAX.into() };
     let corners = cursor.section(smooth, |c| {
         let indices = c.three(|c| c.unsigned(wide(9)) as u32);
@@ -383,6 +402,7 @@ pub(crate) fn read(bytes: &[u8]) -> Blob {
         header,
         nodes,
         triangles,
+        spheres,
         ids,
         corners,
         normals,

@@ -3,7 +3,7 @@
 use core_rt::blob::{BlobError, PREFIX_SIZE};
 use core_rt::kernel::Kernel;
 use host_tools::prepare::Blob;
-use tests::blobs::{repaired, sample};
+use tests::blobs::{repaired, sample, sample_with_spheres};
 
 use crate::{for_every_kernel, verdict};
 
@@ -15,8 +15,8 @@ for_every_kernel!(
     misaligned
 );
 
-fn samples<K: Kernel>() -> [Blob; 2] {
-    [sample::<K>(false), sample::<K>(true)]
+fn samples<K: Kernel>() -> [Blob; 3] {
+    [sample::<K>(false), sample::<K>(true), sample_with_spheres::<K>()]
 }
 
 fn cut_anywhere<K: Kernel>() {

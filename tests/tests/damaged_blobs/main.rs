@@ -9,12 +9,14 @@ mod contents;
 mod extremes;
 mod headers;
 mod paint;
+mod spheres;
 mod trees;
 
 use core_rt::blob::BlobError;
 use core_rt::kernel::Kernel;
 use core_rt::profile::Full;
 use core_rt::scene::Scene;
+use host_tools::prepare::Blob;
 use tests::blobs::{Draft, corners, sample};
 
 /// Makes tests of functions that are generic over the kernel, one for each kernel.
@@ -41,7 +43,11 @@ type Damage<K> = (&'static str, fn(&mut Draft<K>), BlobError);
 
 /// Asserts what is said of the sample with each of some changes made to it.
 fn refused<K: Kernel>(smooth: bool, cases: &[Damage<K>]) {
-    let good = sample::<K>(smooth);
+    refused_of(&sample::<K>(smooth), cases);
+}
+
+/// Asserts what is said of a good blob with each of some changes made to it.
+fn refused_of<K: Kernel>(good: &Blob, cases: &[Damage<K>]) {
     for (name, damage, expected) in cases {
         let mut draft = Draft::read(good.bytes()).expect("a good blob");
         damage(&mut draft);

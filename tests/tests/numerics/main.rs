@@ -3,6 +3,7 @@
 
 mod optics;
 mod paint;
+mod spheres;
 
 use core_rt::camera::{Camera, CameraHeader, Use};
 use core_rt::colour::{Colour, Rgb16, Transfer};
@@ -20,7 +21,7 @@ use tests::rays::{self, Rays};
 
 /// The largest error of each operation, in the unit that its name gives. What is measured must be at most this, and at
 /// least a quarter of it.
-const TOLERANCES: [(&str, f64); 70] = [
+const TOLERANCES: [(&str, f64); 76] = [
     ("sample's step, units of a coefficient", 2.0),
     ("exact14 normalise, 2^-14", 3.0),
     ("exact29 normalise, 2^-30", 3.0),
@@ -91,6 +92,13 @@ const TOLERANCES: [(&str, f64); 70] = [
     ("GridQ31 blend, units", 0.5),
     ("exact14 texture coordinate, 2^-14 of the span", 8.0),
     ("bilinear texture, 2^-16", 5.5),
+    ("exact14 sphere point, grid units", 0.03174),
+    ("exact20 sphere point, grid units", 0.001954),
+    ("exact29 sphere point, grid units", 0.001954),
+    ("exact14 sphere normal, 2^-14", 5.0),
+    // A t that is rounded up to a multiple of 1 / |D|^2 moves the point by 2^-20, with the least radius half of that in the normal.
+    ("exact20 sphere normal, 2^-30", 515.0),
+    ("exact29 sphere normal, 2^-30", 3.0),
 ];
 
 #[track_caller]

@@ -83,6 +83,14 @@ impl<const DIRECTION_BITS: u32, const FAULT: u8> Width for Toy<DIRECTION_BITS, F
         (0..3).map(|axis| i64::from(a[axis]) * i64::from(b[axis])).sum()
     }
 
+    fn square(a: Triple<i32>) -> i64 {
+        Self::dot(a, a)
+    }
+
+    fn discriminant_root(a: i64, b: i64, c: i64) -> Option<(i64, bool)> {
+        Width14::discriminant_root(a, b, c)
+    }
+
     fn order(a: (i64, i64), b: (i64, i64)) -> Ordering {
         (a.0 * b.1).cmp(&(b.0 * a.1))
     }
@@ -98,6 +106,16 @@ impl<const DIRECTION_BITS: u32, const FAULT: u8> Width for Toy<DIRECTION_BITS, F
 
     fn point(origin: Triple<i32>, direction: Triple<i32>, numerator: i64, denominator: i64) -> Triple<i32> {
         Width14::point(origin, direction, numerator, denominator)
+    }
+
+    fn on_sphere(
+        centre: Triple<i32>,
+        s: Triple<i32>,
+        direction: Triple<i32>,
+        numerator: i64,
+        denominator: i64,
+    ) -> (Triple<i32>, Triple<i32>) {
+        Width14::on_sphere(centre, s, direction, numerator, denominator)
     }
 
     fn normalise(vector: Triple<i32>) -> Option<<Grid14 as Space>::Unit> {
