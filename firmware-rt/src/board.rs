@@ -1,8 +1,12 @@
 //! Boards: where code, blob, stack and variables lie.
 //!
-//! The blob has a part of the flash of its own, so that a scene can change without a rebuild. The stack lies at the
+//! The blob has a part of the flash of its own, so that a scene can change without a rebuild; where it begins depends on the
+//! kernel, whose code is larger the wider its numbers are. The stack lies at the
 //! bottom of the RAM, as flip-link has it: one that grows too far leaves the RAM and faults, instead of growing into
 //! variables.
+
+use core_rt::exact::Exact14;
+use core_rt::kernel::Kernel;
 
 /// A run of addresses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,7 +20,7 @@ pub struct Region {
 impl Region {
     /// The first address behind it.
     #[must_use]
-    pub const fn end(&self) -> u32 {
+    pub const fn end(self) -> u32 {
         self.start + self.length
     }
 }
@@ -32,14 +36,30 @@ pub struct Board {
     pub target: &'static str,
     /// The package of its firmware.
     pub package: &'static str,
-    /// Flash for code and constants.
-    pub code: Region,
-    /// Flash for the blob.
-    pub blob: Region,
+    /// Flash for code, constants and the blob.
+    pub flash: Region,
+    /// The bytes of it that are for code and constants: of `exact14`, and of the other kernels.
+    pub code_lengths: [u32; 2],
     /// RAM for the stack, which grows towards the start.
     pub stack: Region,
     /// RAM for variables.
     pub ram: Region,
+}
+
+impl Board {
+    /// Flash for the code and constants of a kernel's firmware.
+    #[must_use]
+    pub const fn code(&self, kernel: u16) -> Region {
+        let [narrow, wide] = self.code_lengths;
+        Region { start: self.flash.start, length: if kernel == Exact14::ID { narrow } else { wide } }
+    }
+
+    /// Flash for a kernel's blob.
+    #[must_use]
+    pub const fn blob(&self, kernel: u16) -> Region {
+        let start = self.code(kernel).end();
+        Region { start, length: self.flash.end() - start }
+    }
 }
 
 const KIB: u32 = 1 << 10;
@@ -50,8 +70,8 @@ pub const MICROBIT: Board = Board {
     chip: "nRF51822, Cortex-M0",
     target: "thumbv6m-none-eabi",
     package: "firmware-cortexm",
-    code: Region { start: 0, length: 64 * KIB },
-    blob: Region { start: 0x0001_0000, length: 192 * KIB },
+    flash: Region { start: 0, length: 256 * KIB },
+    code_lengths: [64 * KIB, 96 * KIB],
     stack: Region { start: 0x2000_0000, length: 8 * KIB },
     ram: Region { start: 0x2000_2000, length: 8 * KIB },
 };
@@ -62,8 +82,8 @@ pub const HIFIVE1: Board = Board {
     chip: "FE310, rv32imac",
     target: "riscv32imac-unknown-none-elf",
     package: "firmware-riscv",
-    code: Region { start: 0x2001_0000, length: 448 * KIB },
-    blob: Region { start: 0x2008_0000, length: 3584 * KIB },
+    flash: Region { start: 0x2001_0000, length: 4032 * KIB },
+    code_lengths: [448 * KIB; 2],
     stack: Region { start: 0x8000_0000, length: 8 * KIB },
     ram: Region { start: 0x8000_2000, length: 8 * KIB },
 };
@@ -80,14 +100,23 @@ pub fn by_name(name: &str) -> Option<&'static Board> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use core_rt::exact::Exact29;
 
     #[test]
     fn regions_do_not_overlap_and_the_stack_is_at_the_bottom() {
         for board in BOARDS {
-            assert!(board.code.end() <= board.blob.start, "{}", board.name);
             assert_eq!(board.stack.end(), board.ram.start, "{}", board.name);
             assert_eq!(board.stack.length + board.ram.length, 16 * KIB, "{}", board.name);
-            assert_eq!((board.blob.start % 8, board.ram.start % 16), (0, 0), "{}", board.name);
+            assert_eq!(board.ram.start % 16, 0, "{}", board.name);
+            for kernel in [Exact14::ID, Exact29::ID] {
+                let (code, blob) = (board.code(kernel), board.blob(kernel));
+                assert_eq!(
+                    (code.end(), blob.end(), blob.start % 8),
+                    (blob.start, board.flash.end(), 0),
+                    "{}",
+                    board.name
+                );
+            }
             assert_eq!(by_name(board.name), Some(board));
         }
         assert_eq!(by_name("no such board"), None);

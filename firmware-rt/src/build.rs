@@ -105,7 +105,7 @@ pub fn script(board: &Board, constant: &str) -> io::Result<()> {
 
     let out = PathBuf::from(env::var_os("OUT_DIR").ok_or_else(|| wrong("no OUT_DIR"))?);
     let is_riscv = env::var("CARGO_CFG_TARGET_ARCH").as_deref() == Ok("riscv32");
-    fs::write(out.join("memory.x"), memory(board, is_riscv))?;
+    fs::write(out.join("memory.x"), memory(board, traits.kernel, is_riscv))?;
     fs::write(out.join("firmware.rs"), firmware(constant, kernel, &traits, draw, count, embedded))?;
     println!("cargo::rustc-link-search={}", out.display());
     for argument in ["--nmagic", "-Tlink.x", "-Tdefmt.x"] {
@@ -115,13 +115,16 @@ pub fn script(board: &Board, constant: &str) -> io::Result<()> {
 }
 
 /// The linker script of a board, for cortex-m-rt and for riscv-rt.
-fn memory(board: &Board, is_riscv: bool) -> String {
+fn memory(board: &Board, kernel: u16, is_riscv: bool) -> String {
     let mut text = String::from("MEMORY\n{\n");
-    let regions = [("FLASH", board.code), ("BLOB", board.blob), ("STACK", board.stack), ("RAM", board.ram)];
+    let regions =
+        [("FLASH", board.code(kernel)), ("BLOB", board.blob(kernel)), ("STACK", board.stack), ("RAM", board.ram)];
     for (name, region) in regions {
         let _ = writeln!(text, "  {name} : ORIGIN = {:#010x}, LENGTH = {:#x}", region.start, region.length);
     }
-    text.push_str("}\n_stack_start = ORIGIN(STACK) + LENGTH(STACK);\n_stack_end = ORIGIN(STACK);\n");
+    text.push_str(
+        "}\n_intray_blob = ORIGIN(BLOB);\n_stack_start = ORIGIN(STACK) + LENGTH(STACK);\n_stack_end = ORIGIN(STACK);\n",
+    );
     if is_riscv {
         let aliases = [
             ("TEXT", "FLASH"),
@@ -194,10 +197,10 @@ mod tests {
 
     #[test]
     fn scripts_have_the_boards_memory() {
-        let text = memory(&MICROBIT, false);
+        let text = memory(&MICROBIT, 14, false);
         assert!(text.contains("STACK : ORIGIN = 0x20000000, LENGTH = 0x2000\n"), "{text}");
         assert!(!text.contains("REGION_ALIAS"));
-        let text = memory(&HIFIVE1, true);
+        let text = memory(&HIFIVE1, 29, true);
         assert!(text.contains("BLOB : ORIGIN = 0x20080000") && text.contains("(\"REGION_STACK\", STACK)"), "{text}");
     }
 }

@@ -1,15 +1,18 @@
 //! What no firmware should do, on purpose: the host must hear of it, and the run must end.
 
+use core_rt::exact::Exact14;
+use core_rt::kernel::Kernel;
+
 use crate::board::Board;
 use crate::end::end;
 use crate::status::Status;
 use crate::transport::Link;
 
-/// Does what the first word in the blob's place asks for.
+/// Does what the first word in the blob's place, that of the default blob's kernel, asks for.
 pub fn misbehave(board: &Board) -> ! {
     let _link = Link::start();
     // SAFETY: an aligned word of flash, which is there whether or not anything was put into it.
-    let asked = unsafe { core::ptr::without_provenance::<u32>(board.blob.start as usize).read_volatile() };
+    let asked = unsafe { core::ptr::without_provenance::<u32>(board.blob(Exact14::ID).start as usize).read_volatile() };
     defmt::info!("misbehaving: {=u32}", asked);
     match asked {
         1 => overflow(1),

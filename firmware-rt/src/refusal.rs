@@ -67,5 +67,6 @@ fn name(need: Need) -> defmt::Str {
         Need::Rgb888 => defmt::intern!("RGB888 output"),
         Need::Rgb565 => defmt::intern!("RGB565 output"),
         Need::Gray8 => defmt::intern!("gray output"),
+        Need::Schlick => defmt::intern!("reflections after Schlick"),
     }
 }

@@ -102,7 +102,7 @@ fn rendered<F: Firmware, S: Stats>(
     counts: fn(&S) -> Counts,
 ) -> Status {
     let link = Link::start();
-    let blob = blob(F::BOARD.blob);
+    let blob = blob(F::BOARD.blob(KernelOf::<F>::ID));
     defmt::info!("{=str}: a blob of {=usize} bytes for {=str}", F::BOARD.name, blob.len(), KernelOf::<F>::NAME);
     // Matched by reference: a scene is not small, and the stack would have it twice.
     let scene = checked::<F::Profile>(blob);

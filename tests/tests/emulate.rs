@@ -163,7 +163,7 @@ fn the_memory_that_a_small_chip_has_is_enough() {
         // The hits and the pixels of a 16x16 tile alone are 1792.
         assert!((1792..2048).contains(&elf.static_bytes), "{}: {}", board.name, elf.static_bytes);
         assert!(stack > 512 && elf.static_bytes + stack <= 4096, "{}: {} {stack}", board.name, elf.static_bytes);
-        assert!((10_000..u64::from(board.code.length)).contains(&elf.text_bytes), "{}", elf.text_bytes);
+        assert!((10_000..u64::from(board.code(14).length)).contains(&elf.text_bytes), "{}", elf.text_bytes);
         assert_eq!(elf.blob_bytes, 0);
     }
 }
@@ -217,14 +217,14 @@ fn a_foreign_blob_and_one_with_other_needs_are_refused_by_the_chip() {
 
 #[test]
 fn what_does_not_fit_is_said_before_anything_is_built() {
-    assert!(room(&MICROBIT, 196_608, || unreachable!()).is_ok());
-    let error = room(&MICROBIT, 200_000, || "fewer triangles".into()).unwrap_err().to_string();
+    assert!(room(&MICROBIT, MICROBIT.blob(14), 196_608, || unreachable!()).is_ok());
+    let error = room(&MICROBIT, MICROBIT.blob(14), 200_000, || "fewer triangles".into()).unwrap_err().to_string();
     assert_eq!(
         error,
         "the blob has 200000 bytes, and microbit has 196608 for it in its flash: 3392 too many. What would help: fewer \
          triangles"
     );
-    assert!(room(&HIFIVE1, 200_000, || unreachable!()).is_ok());
+    assert!(room(&HIFIVE1, HIFIVE1.blob(29), 200_000, || unreachable!()).is_ok());
 }
 
 #[test]

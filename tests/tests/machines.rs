@@ -46,14 +46,15 @@ fn prepared(model: &Model, kernel: &str) -> Blob {
 /// The model with as many triangles as every board's flash has room for, whatever the kernel.
 fn fitted(model: Model) -> Model {
     let triangles = model.triangles.len();
-    let bytes = KERNELS.map(|kernel| prepared(&model, kernel).bytes().len()).into_iter().max().expect("kernels");
-    let room = BOARDS.map(|board| board.blob.length as usize).into_iter().min().expect("boards");
-    // In proportion, a fiftieth less for what does not shrink with the triangles.
-    if bytes <= room {
-        model
-    } else {
-        decimate(model, triangles * room / bytes * 49 / 50).expect("it has few outlines")
-    }
+    let fitting = |kernel: &str| {
+        let bytes = prepared(&model, kernel).bytes().len();
+        let id = engine::by_name(kernel).expect("a kernel of this name").id();
+        let room = BOARDS.map(|board| board.blob(id).length as usize).into_iter().min().expect("boards");
+        // In proportion, a fiftieth less for what does not shrink with the triangles.
+        if bytes <= room { triangles } else { triangles * room / bytes * 49 / 50 }
+    };
+    let fitting = KERNELS.map(fitting).into_iter().min().expect("kernels");
+    if fitting == triangles { model } else { decimate(model, fitting).expect("it has few outlines") }
 }
 
 /// What firmware for one scene alone has.

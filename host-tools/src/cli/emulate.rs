@@ -115,7 +115,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let bytes = scene.blob.bytes();
     firmware::check(board, &Traits::new(scene.engine.id(), &header)).map_err(failure)?;
-    room(board, bytes.len() as u64, || help(board, &scene, &header, &sizes)).map_err(failure)?;
+    room(board, board.blob(scene.engine.id()), bytes.len() as u64, || help(board, &scene, &header, &sizes))
+        .map_err(failure)?;
 
     let machine = Machine::of(board);
     machine.version().map_err(failure)?;
@@ -240,7 +241,7 @@ fn help(board: &Board, scene: &Scene, header: &Header, sizes: &Sizes) -> String 
     let triangles = u64::from(header.counts.triangles);
     let bytes = scene.blob.bytes().len() as u64;
     // In proportion, a fiftieth less for what does not shrink with the triangles.
-    let fitting = triangles * u64::from(board.blob.length) / bytes * 49 / 50;
+    let fitting = triangles * u64::from(board.blob(scene.engine.id()).length) / bytes * 49 / 50;
     let mut help = Vec::new();
     if triangles > 0 {
         help.push(format!("fewer triangles (`intray prep --triangles {fitting}` instead of {triangles})"));

@@ -47,7 +47,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let elf = Elf::read(&arguments.elf, board).map_err(failure)?;
     let blob = arguments.blob.as_deref().map(files::read).transpose()?;
     if let Some(blob) = &blob {
-        room(board, blob.len() as u64, || "a smaller blob".into()).map_err(failure)?;
+        room(board, elf.blob_place, blob.len() as u64, || "a smaller blob".into()).map_err(failure)?;
     }
     Machine::of(board).version().map_err(failure)?;
 

@@ -8,6 +8,7 @@ use firmware_rt::board::Board;
 use firmware_rt::status::Status;
 
 use super::EmulateError;
+use super::elf::Elf;
 
 /// QEMU loads no raw file that is larger than the machine's RAM: 16 KiB, wherever in the flash it is for.
 pub(super) const PIECE: usize = 1 << 14;
@@ -16,7 +17,6 @@ pub(super) const PIECE: usize = 1 << 14;
 #[derive(Clone, Copy, Debug)]
 pub struct Machine {
     board: &'static str,
-    blob_address: u32,
     program: &'static str,
     arguments: &'static [&'static str],
 }
@@ -30,7 +30,7 @@ impl Machine {
             // Revision B starts where the flash of the real board does.
             _ => ("qemu-system-riscv32", &["-M", "sifive_e,revb=true", "-bios", "none"]),
         };
-        Self { board: board.name, blob_address: board.blob.start, program, arguments }
+        Self { board: board.name, program, arguments }
     }
 
     /// The program.
@@ -55,13 +55,13 @@ impl Machine {
     }
 
     /// QEMU with firmware, and with the pieces of a blob in its place.
-    pub(super) fn command(&self, elf: &Path, pieces: &[PathBuf], plugin: Option<&OsStr>) -> Command {
+    pub(super) fn command(&self, elf: &Elf, pieces: &[PathBuf], plugin: Option<&OsStr>) -> Command {
         let mut command = Command::new(self.program);
         command.args(self.arguments);
         command.args(["-nographic", "-monitor", "none", "-serial", "none"]);
         // Without semihosting both machines would wait for ever at the first word to the host.
-        command.args(["-semihosting-config", "enable=on,target=native", "-kernel"]).arg(elf);
-        for (piece, address) in pieces.iter().zip((self.blob_address..).step_by(PIECE)) {
+        command.args(["-semihosting-config", "enable=on,target=native", "-kernel"]).arg(elf.path());
+        for (piece, address) in pieces.iter().zip((elf.blob_place.start..).step_by(PIECE)) {
             let mut device = OsString::from("loader,file=");
             device.push(doubled(piece));
             device.push(format!(",addr={address:#x},force-raw=on"));

@@ -19,7 +19,7 @@ use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
-use firmware_rt::board::Board;
+use firmware_rt::board::{Board, Region};
 use firmware_rt::frame::Report;
 
 use crate::picture::Picture;
@@ -43,8 +43,8 @@ pub fn check(board: &Board) -> Result<(), EmulateError> {
 ///
 /// # Errors
 /// [`EmulateError::TooLarge`].
-pub fn room(board: &Board, bytes: u64, help: impl FnOnce() -> String) -> Result<(), EmulateError> {
-    let room = u64::from(board.blob.length);
+pub fn room(board: &Board, place: Region, bytes: u64, help: impl FnOnce() -> String) -> Result<(), EmulateError> {
+    let room = u64::from(place.length);
     if bytes <= room {
         return Ok(());
     }
@@ -110,7 +110,7 @@ impl Run<'_> {
         }
         let out = folder.path().join("counts.json");
         let plugin = self.counter.map(|counter| counter.argument(self.elf, &out)).transpose()?;
-        let mut command = machine.command(self.elf.path(), &pieces, plugin.as_deref());
+        let mut command = machine.command(self.elf, &pieces, plugin.as_deref());
         command.current_dir(folder.path());
 
         let mut log = Log::new(self.elf)?;

@@ -54,7 +54,7 @@ impl Running {
         let mut command = Command::new(program);
         command.args(machine).args(["-nographic", "-monitor", "none", "-serial", "none", "-S", "-gdb"]);
         command.arg(format!("unix:{},server=on,wait=off", socket.display())).arg("-kernel").arg(elf.path());
-        for (address, piece) in (board.blob.start..).step_by(PIECE).zip(blob.chunks(PIECE)) {
+        for (address, piece) in (elf.blob_place.start..).step_by(PIECE).zip(blob.chunks(PIECE)) {
             let file = folder.join(format!("{address:x}"));
             std::fs::write(&file, piece).unwrap();
             command.arg("-device").arg(format!("loader,file={},addr={address:#x},force-raw=on", file.display()));
@@ -149,7 +149,7 @@ fn buffers_are_in_ram_and_everything_fits() {
         let ram = u64::from(board.ram.start)..u64::from(board.ram.end());
         assert!(elf.symbol("_SEGGER_RTT").is_some_and(|address| ram.contains(&address)), "{}", board.name);
         assert_eq!(elf.symbol("_SEGGER"), None);
-        assert!((10_000..u64::from(board.code.length)).contains(&elf.text_bytes), "{}", elf.text_bytes);
+        assert!((10_000..u64::from(board.code(14).length)).contains(&elf.text_bytes), "{}", elf.text_bytes);
         // The buffers alone are 1280; the stack has memory of its own.
         assert!((1280..u64::from(board.ram.length)).contains(&elf.static_bytes), "{}", elf.static_bytes);
         let by_semihosting = Wanted { board, blob: blob.bytes(), hits: None, count: false }.provide().unwrap();
