@@ -88,8 +88,11 @@ difference times eight.
 
 ";
 
-/// The table's rows: name, kernel, and the columns of both sizes; `None` where a row was not measured at a size.
-fn rows(everything: bool) -> (Vec<(String, [Option<String>; 2])>, Vec<String>) {
+/// A row of the table: scene and kernel, and the columns of both sizes; `None` where it was not measured at a size.
+type Row = (String, [Option<String>; 2]);
+
+/// The table, and what of it falls short.
+fn rows(everything: bool) -> (Vec<Row>, Vec<String>) {
     let (mut rows, mut shortfalls) = (Vec::new(), Vec::new());
     for name in SCENES {
         let models = SIZES.map(|size| scene(name, size));

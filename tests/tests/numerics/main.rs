@@ -109,6 +109,41 @@ fn within_tolerance(name: &str, measured: f64) {
     assert!(measured * 4.0 >= *tolerance, "{name}: {measured}, so the tolerance {tolerance} is stale");
 }
 
+/// A row an operation of shading, a column a space.
+fn errors() -> String {
+    const SPACES: [&str; 4] = ["14", "29", "Q31", "f32"];
+    let mut rows: Vec<(&str, [String; 4])> = Vec::new();
+    for (entry, tolerance) in TOLERANCES {
+        let Some((space, operation)) = entry.split_once(' ') else { continue };
+        let Some(column) = SPACES.iter().position(|known| *known == space) else { continue };
+        let (operation, unit) = operation.rsplit_once(", ").expect("an operation and its unit");
+        let cell = if unit == "units" { tolerance.to_string() } else { format!("{tolerance} x {unit}") };
+        let row = rows.iter().position(|(known, _)| *known == operation).unwrap_or_else(|| {
+            rows.push((operation, Default::default()));
+            rows.len() - 1
+        });
+        rows[row].1[column] = cell;
+    }
+    let head = "| operation | 14 bits | 29 bits | 2009 report | f32 |\n| --- | --- | --- | --- | --- |\n".to_owned();
+    rows.iter().fold(head, |text, (operation, cells)| text + &format!("| {operation} | {} |\n", cells.join(" | ")))
+}
+
+/// `docs/SHADING.md` has the table's bounds; `INTRAY_BLESS=1` renews it.
+#[test]
+fn the_document_has_these_bounds() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/SHADING.md");
+    let text = std::fs::read_to_string(&path).expect("the document");
+    let (begin, end) = ("<!-- generated: errors -->\n", "<!-- end of generated -->\n");
+    let (before, rest) = text.split_once(begin).expect("a generated part");
+    let (found, after) = rest.split_once(end).expect("its end");
+    let errors = errors();
+    if std::env::var_os("INTRAY_BLESS").is_some() {
+        std::fs::write(&path, format!("{before}{begin}{errors}{end}{after}")).expect("the document");
+    } else {
+        assert_eq!(found, errors, "INTRAY_BLESS=1 renews it");
+    }
+}
+
 /// A vector with components of any magnitude up to `2^bits`, often at the ends.
 fn vector(random: &mut SplitMix64, bits: u32) -> [i64; 3] {
     [0; 3].map(|_| {

@@ -1,4 +1,4 @@
-//! Generates the built-in scene, `scenes/demo`: a Cornell box with a trefoil knot on a plinth and a gem.
+//! Generates the built-in scene, `scenes/demo`: a Cornell box with a golden trefoil knot on a plinth, a gem, a mirror and glass.
 //!
 //! The files are committed; this is where they come from, and a test holds the two equal. Every figure goes
 //! through libm and is printed with six decimals, so that they are the same wherever they are made.
@@ -44,6 +44,40 @@ kind = "point"
 position = [0.0, 1.8, 0.45]
 colour = [1.0, 0.97, 0.9]
 intensity = 0.95
+
+[[sphere]]
+centre = [-0.66, 0.19, 0.5]
+radius = 0.19
+material = "mirror"
+
+[[sphere]]
+centre = [0.2, 0.15, 0.72]
+radius = 0.15
+material = "glass"
+
+[material.knot]
+kind = "metal"
+exponent = 60
+
+[material.gem]
+specular = "blinn-phong"
+exponent = 200
+weights = [0.8, 0.6, 0.15, 0.0]
+
+[material.mirror]
+kind = "mirror"
+colour = [0.92, 0.94, 0.96]
+
+[material.glass]
+kind = "dielectric"
+ior = 1.5
+colour = [0.97, 1.0, 0.98]
+exponent = 300
+tinted_shadow = true
+
+# Seen in what shines alone.
+[background]
+sky = [[0.1, 0.1, 0.11], [0.45, 0.5, 0.58]]
 
 [render]
 size = [640, 480]
