@@ -5,7 +5,8 @@
 //! the picture of the nearest [`hits`] is.
 //!
 //! # On the chip
-//! `run` checks the blob where it lies in flash and renders it tile by tile, between the marks of `window`.
+//! `run` checks the blob where it lies in flash and renders it tile by tile, between the marks of `window`,
+//! and with those of `marks` where rays are told apart.
 //! `transport` takes log and frames to the host, `stack` measures, `end` is how every run ends, well or not.
 //!
 //! # Building
@@ -22,6 +23,8 @@ pub mod build;
 
 #[cfg(target_os = "none")]
 pub mod end;
+#[cfg(target_os = "none")]
+mod marks;
 #[cfg(target_os = "none")]
 pub mod misbehave;
 #[cfg(target_os = "none")]

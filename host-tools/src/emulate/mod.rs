@@ -3,6 +3,7 @@
 //! The picture comes in [`frames`] through a file, the [`log`] through standard output, the end as an exit status, and
 //! the number of instructions from a [plugin](counter) that watches from outside.
 
+pub mod breakdown;
 pub mod counter;
 pub mod elf;
 mod error;
@@ -10,6 +11,7 @@ pub mod firmware;
 pub mod frames;
 pub mod log;
 pub mod machine;
+pub mod parts;
 pub mod process;
 mod repository;
 

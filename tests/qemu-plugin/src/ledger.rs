@@ -10,6 +10,7 @@ use std::collections::{BTreeMap, HashMap};
 use serde::Serialize;
 
 use crate::isa::{Cost, Isa};
+use crate::rays::{KINDS, Mark, Rays};
 use crate::symbols::Symbols;
 
 /// What a counter counts. Translating code anew, or from the middle of a block, gives equal events equal counters.
@@ -35,6 +36,8 @@ pub(crate) struct Ledger {
     inside: Vec<u64>,
     windows: Vec<Cost>,
     unpaired: u64,
+    /// Where rays are marked.
+    rays: Option<Rays>,
 }
 
 /// The output.
@@ -63,11 +66,14 @@ struct Named {
     name: String,
     #[serde(flatten)]
     tally: Tally,
+    /// The instructions for each kind of ray.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rays: Option<[i64; KINDS]>,
 }
 
 impl Ledger {
     /// Without counters.
-    pub(crate) fn new(isa: Isa, symbols: Symbols) -> Self {
+    pub(crate) fn new(isa: Isa, symbols: Symbols, has_rays: bool) -> Self {
         Self {
             isa,
             symbols,
@@ -77,6 +83,7 @@ impl Ledger {
             inside: Vec::new(),
             windows: Vec::new(),
             unpaired: 0,
+            rays: has_rays.then(Rays::default),
         }
     }
 
@@ -119,6 +126,9 @@ impl Ledger {
         if self.open.is_some() {
             self.unpaired += 1;
         } else {
+            if let Some(rays) = &mut self.rays {
+                rays.begin(&now);
+            }
             self.open = Some(now);
         }
     }
@@ -129,6 +139,9 @@ impl Ledger {
             self.unpaired += 1;
             return;
         };
+        if let Some(rays) = &mut self.rays {
+            self.unpaired += u64::from(!rays.end(now));
+        }
         self.inside.resize(now.len(), 0);
         let mut window = Cost::default();
         for (counter, &value) in now.iter().enumerate() {
@@ -138,6 +151,13 @@ impl Ledger {
             self.costs[counter].iter().for_each(|&(_, cost)| window.add(cost, rise as i64));
         }
         self.windows.push(window);
+    }
+
+    /// A mark of a ray is passed, the counters standing as given; outside the windows none counts.
+    pub(crate) fn pass(&mut self, mark: Mark, now: &[u64]) {
+        if let (Some(rays), Some(_)) = (&mut self.rays, &self.open) {
+            self.unpaired += u64::from(!rays.pass(mark, now));
+        }
     }
 
     /// The sums at exit, the counters standing as given.
@@ -157,6 +177,17 @@ impl Ledger {
                 symbol.map_or(&mut elsewhere, |index| &mut by_symbol[index]).add(cost, times as i64);
             }
         }
+        let mut by_ray = vec![[0; KINDS]; self.symbols.names().len()];
+        if let Some(rays) = &self.rays {
+            for (counter, costs) in self.costs.iter().enumerate() {
+                let rises = rays.rises(counter);
+                for (symbol, cost) in costs.iter().filter_map(|&(symbol, cost)| Some((symbol?, cost))) {
+                    for (sum, rise) in by_ray[symbol].iter_mut().zip(rises) {
+                        *sum += cost.instructions * rise as i64;
+                    }
+                }
+            }
+        }
         let mut sum = Cost::default();
         self.windows.iter().for_each(|&window| sum.add(window, 1));
 
@@ -170,7 +201,15 @@ impl Ledger {
             sum: tally(sum),
             windows: self.windows.iter().copied().map(tally).collect(),
             unpaired: self.unpaired,
-            symbols: names.zip(by_symbol).map(|(name, cost)| Named { name, tally: tally(cost) }).collect(),
+            symbols: names
+                .zip(by_symbol)
+                .zip(by_ray)
+                .map(|((name, cost), by_ray)| Named {
+                    name,
+                    tally: tally(cost),
+                    rays: self.rays.as_ref().map(|_| by_ray),
+                })
+                .collect(),
             elsewhere: tally(elsewhere),
             run: tally(run),
         }
@@ -186,7 +225,7 @@ mod tests {
     const BNE: [u8; 2] = [0xfc, 0xd1];
 
     fn ledger(symbols: &str) -> Ledger {
-        Ledger::new(Isa::Thumb, Symbols::parse(symbols).unwrap())
+        Ledger::new(Isa::Thumb, Symbols::parse(symbols).unwrap(), false)
     }
 
     fn report(ledger: Ledger, now: &[u64]) -> Value {
@@ -232,6 +271,19 @@ mod tests {
             "run": {"instructions": 34, "cycles": {"cortex-m0": 62, "cortex-m0plus": 48}},
         });
         assert_eq!(report(ledger, &[15, 1, 4]), expected);
+    }
+
+    #[test]
+    fn kinds_of_rays_split_symbols() {
+        let mut ledger = Ledger::new(Isa::Thumb, Symbols::parse("0x40 0x2 head\n").unwrap(), true);
+        ledger.run(0x40, vec![ADDS.to_vec(), BNE.to_vec()]);
+        ledger.pass(Mark::Shadow, &[3]); // outside
+        ledger.begin(vec![5]);
+        ledger.pass(Mark::Shadow, &[7]);
+        ledger.pass(Mark::Lit, &[12]);
+        ledger.end(&[13]);
+        let report = report(ledger, &[20]);
+        assert_eq!((&report["symbols"][0]["rays"], &report["unpaired"]), (&json!([3, 5, 0, 0]), &json!(0)));
     }
 
     #[test]

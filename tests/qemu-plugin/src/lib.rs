@@ -20,6 +20,9 @@
 //!   instruction belongs to the last symbol that starts at or before it, if that reaches so far; of several that start
 //!   at one address the first line counts.
 //!
+//! - `shadow`, `lit`, `reflection`, `refraction`, `next` (optional, all or none): addresses of the first instructions of five
+//!   functions, which a program calls to tell which [kind of ray](rays) it follows.
+//!
 //! A comma in a path is doubled, as always on QEMU's command line. What is wrong with the arguments, or with the version
 //! of QEMU, is said on stderr, and QEMU exits with status 1 before the guest starts.
 //!
@@ -30,8 +33,10 @@
 //!   `cortex-m0` and `cortex-m0plus`; empty for RISC-V.
 //! - `windows`: an array with `instructions` and `cycles` of each window, in order of time.
 //! - `unpaired`: how often `begin` was met in an open window (which goes on) or `end` outside one (which is ignored), plus
-//!   1 if the last window was still open at the exit (which closes it). 0 unless something is wrong.
-//! - `symbols`: an array with `name`, `instructions` and `cycles` of each symbol within the windows, in the file's order.
+//!   1 if the last window was still open at the exit (which closes it), and how often marks of rays were out of order. 0
+//!   unless something is wrong.
+//! - `symbols`: an array with `name`, `instructions` and `cycles` of each symbol within the windows, in the file's order; and
+//!   with `rays`, the instructions for primary, shadow, reflected and refracted rays, where these are marked.
 //! - `elsewhere`: `instructions` and `cycles` within the windows but outside all symbols.
 //! - `run`: `instructions` and `cycles` from reset to exit.
 //!
@@ -48,6 +53,7 @@ mod arguments;
 mod isa;
 mod ledger;
 mod plugin;
+mod rays;
 mod riscv;
 mod symbols;
 mod thumb;

@@ -8,6 +8,7 @@ use crate::api::{Block, Entry, Id, Info, Qemu, VERSION};
 use crate::arguments::Arguments;
 use crate::isa::Isa;
 use crate::ledger::Ledger;
+use crate::rays::{MARKS, Mark};
 use crate::symbols::Symbols;
 
 /// The version of the API that QEMU compares with its own before it calls anything.
@@ -26,6 +27,7 @@ struct Plugin {
     qemu: Qemu,
     begin: u64,
     end: u64,
+    marks: Vec<(u64, Mark)>,
     out: PathBuf,
     /// Where the last block ends, if it ended with a conditional branch, and else nowhere.
     fall_through: Entry,
@@ -85,7 +87,7 @@ unsafe fn install(info: &Info, words: Result<Vec<&str>, String>) -> Result<&'sta
     let target = unsafe { CStr::from_ptr(info.target_name) }.to_string_lossy();
     let isa = Isa::of_target(&target).ok_or_else(|| format!("it counts on arm and riscv32, not on {target}"))?;
 
-    let Arguments { begin, end, symbols, out } = Arguments::parse(words?)?;
+    let Arguments { begin, end, symbols, marks, out } = Arguments::parse(words?)?;
     let of = |path: &Path, error: String| format!("{}: {error}", path.display());
     let symbols = match symbols {
         None => Symbols::default(),
@@ -100,8 +102,8 @@ unsafe fn install(info: &Info, words: Result<Vec<&str>, String>) -> Result<&'sta
     // SAFETY: the version was checked above.
     let qemu = unsafe { Qemu::find() }.map_err(|error| format!("this QEMU is not as it says: {error}"))?;
     let fall_through = qemu.entries(1).next().ok_or("no scoreboard")?;
-    let state = Mutex::new(Some(State { ledger: Ledger::new(isa, symbols), entries: Vec::new() }));
-    Ok(PLUGIN.get_or_init(|| Plugin { qemu, begin, end, out, fall_through, state }))
+    let state = Mutex::new(Some(State { ledger: Ledger::new(isa, symbols, !marks.is_empty()), entries: Vec::new() }));
+    Ok(PLUGIN.get_or_init(|| Plugin { qemu, begin, end, marks, out, fall_through, state }))
 }
 
 /// Instruments a block.
@@ -126,6 +128,15 @@ unsafe extern "C" fn on_end(_: c_uint, _: *mut c_void) {
     plugin.with_state(|state| {
         let now = state.read(&plugin.qemu);
         state.ledger.end(&now);
+    });
+}
+
+/// Before the first instruction of a mark, whose number among all `mark` is.
+unsafe extern "C" fn on_mark(_: c_uint, mark: *mut c_void) {
+    let (Some(plugin), Some(&mark)) = (PLUGIN.get(), MARKS.get(mark.addr())) else { return };
+    plugin.with_state(|state| {
+        let now = state.read(&plugin.qemu);
+        state.ledger.pass(mark, &now);
     });
 }
 
@@ -192,7 +203,8 @@ impl State {
             unsafe { qemu.call_if(block, condition, on_fall_through, entry) };
         }
 
-        let edge = |address| address == plugin.begin || address == plugin.end;
+        let mark = |address| plugin.marks.iter().find(|&&(at, _)| at == address).map(|&(_, mark)| mark);
+        let edge = |address| address == plugin.begin || address == plugin.end || mark(address).is_some();
         let runs = instructions.chunk_by(|(_, _, code), (_, next, _)| !isa.may_leave(code) && !edge(*next));
         for run in runs {
             let (first, address, _) = run[0];
@@ -202,9 +214,11 @@ impl State {
             // beginning of a window is counted and the one at its end is not.
             unsafe {
                 if address == plugin.begin {
-                    qemu.call(first, on_begin);
+                    qemu.call(first, on_begin, std::ptr::null_mut());
                 } else if address == plugin.end {
-                    qemu.call(first, on_end);
+                    qemu.call(first, on_end, std::ptr::null_mut());
+                } else if let Some(mark) = mark(address) {
+                    qemu.call(first, on_mark, std::ptr::without_provenance_mut(mark as usize));
                 }
                 qemu.count(first, entry);
             }
