@@ -65,10 +65,12 @@ pub(crate) fn arriving<P: Profile>(
                 }
             })
         });
-        stats.lit();
+        // Told in either case apart: between the two, it would move code of firmware that is told nothing.
         if blocked {
+            stats.lit();
             return None;
         }
+        stats.lit();
     }
     let mut light_here = <SpaceOf<P> as Space>::Colour::light(&light.radiance);
     if P::NEEDS.has(Need::Falloff) && is_point && light.reach.mantissa != 0 {

@@ -10,12 +10,15 @@ use serde::{Deserialize, Serialize};
 use super::EmulateError;
 use super::elf::Elf;
 use super::machine::{Machine, doubled};
-use super::parts::Range;
+use super::parts::{Part, Range};
 use super::repository::Repository;
 use crate::files;
 
 /// The version of QEMU that has the plugin's API.
 const QEMU: u32 = 10;
+
+/// What the plugin counts for whoever calls it.
+const SHARED: &str = "caller";
 
 /// Where no instruction is.
 const NOWHERE: u64 = u64::MAX - 1;
@@ -97,7 +100,8 @@ impl Counter {
             let mut list = String::new();
             for Range { start, size, part } in elf.parts()? {
                 // A string takes text.
-                let _ = writeln!(list, "{start:#x} {size:#x} {}", part.name());
+                let name = part.map_or(SHARED, Part::name);
+                let _ = writeln!(list, "{start:#x} {size:#x} {name}");
             }
             files::write_atomically(&parts, list.as_bytes())?;
             argument.push(",symbols=");

@@ -1,8 +1,8 @@
 //! Parts of a firmware: which instruction is for what, by the sources that it was compiled from.
 //!
 //! An instruction belongs to a chain of functions, each inlined into the next, and each of a file. The innermost file that
-//! says what its code is for decides; arithmetic, and whatever libraries have, is for whom it was inlined into. What was not
-//! inlined, so that nothing says for whom it is, has a row of its own.
+//! says what its code is for decides; arithmetic, and whatever libraries have, is for whom it was inlined into. Where it was
+//! not inlined, it is for whoever calls it, which only a run can tell.
 
 use addr2line::Context;
 use addr2line::gimli::{Dwarf, EndianSlice, Error, LittleEndian, SectionId};
@@ -22,27 +22,14 @@ pub enum Part {
     Shading,
     /// Rays and pixels: from the camera or a direction to a prepared ray, and places in a tile.
     Rays,
-    /// Arithmetic that was not inlined: reciprocals, roots, powers.
-    Arithmetic,
-    /// Routines of the compiler and of libraries that were not inlined.
-    Library,
     /// What tells the kinds of ray apart; a firmware that is not broken down has none.
     Marks,
-    /// What has no debug information, and the rest.
+    /// The rest: the edges of what is measured.
     Other,
 }
 
 /// All parts, in the order of a table's rows.
-pub const PARTS: [Part; 8] = [
-    Part::Traversal,
-    Part::Intersection,
-    Part::Shading,
-    Part::Rays,
-    Part::Arithmetic,
-    Part::Library,
-    Part::Marks,
-    Part::Other,
-];
+pub const PARTS: [Part; 6] = [Part::Traversal, Part::Intersection, Part::Shading, Part::Rays, Part::Marks, Part::Other];
 
 impl Part {
     /// Its name, as in [`Part::by_name`].
@@ -53,8 +40,6 @@ impl Part {
             Self::Intersection => "intersection",
             Self::Shading => "shading",
             Self::Rays => "rays",
-            Self::Arithmetic => "arithmetic",
-            Self::Library => "library",
             Self::Marks => "marks",
             Self::Other => "other",
         }
@@ -66,70 +51,54 @@ impl Part {
         PARTS.into_iter().find(|part| part.name() == name)
     }
 
-    /// What the instruction is for whose chain of functions stands in these files, the innermost first.
+    /// What the instruction is for whose chain of functions stands in these files, the innermost first; `None` where it is
+    /// for whoever calls the outermost.
     #[must_use]
-    pub fn of<'a>(files: impl IntoIterator<Item = &'a str>) -> Self {
-        let mut outermost = Self::Other;
-        for file in files {
-            match role(file) {
-                Role::Decides(part) => return part,
-                Role::Serves(part) => outermost = part,
-            }
-        }
-        outermost
+    pub fn of<'a>(files: impl IntoIterator<Item = &'a str>) -> Option<Self> {
+        files.into_iter().find_map(decided)
     }
 }
 
-/// What a file says of its code.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Role {
-    /// What it is for.
-    Decides(Part),
-    /// That it is for whoever calls it; the part is for where that is not known.
-    Serves(Part),
-}
-
-/// Of this project's files, by the end of their paths; the first that fits.
-const ROLES: [(&str, Role); 27] = [
-    ("-rt/src/bvh.rs", Role::Decides(Part::Traversal)),
-    ("/boxes.rs", Role::Decides(Part::Traversal)),
-    ("/triangle.rs", Role::Decides(Part::Intersection)),
-    ("/sphere.rs", Role::Decides(Part::Intersection)),
-    ("/resolve.rs", Role::Decides(Part::Intersection)),
-    ("core-rt/src/shade.rs", Role::Decides(Part::Shading)),
-    ("core-rt/src/light.rs", Role::Decides(Part::Shading)),
-    ("core-rt/src/whitted.rs", Role::Decides(Part::Shading)),
-    ("core-rt/src/albedo.rs", Role::Decides(Part::Shading)),
-    ("core-rt/src/texture.rs", Role::Decides(Part::Shading)),
-    ("core-rt/src/paint.rs", Role::Decides(Part::Shading)),
-    ("core-rt/src/srgb.rs", Role::Decides(Part::Shading)),
-    ("/colour.rs", Role::Decides(Part::Shading)),
-    ("/space.rs", Role::Decides(Part::Shading)),
-    ("/grid14.rs", Role::Decides(Part::Shading)),
-    ("/grid29.rs", Role::Decides(Part::Shading)),
-    ("/optics.rs", Role::Decides(Part::Shading)),
-    ("hanika/shading.rs", Role::Decides(Part::Shading)),
-    ("/ray.rs", Role::Decides(Part::Rays)),
-    ("core-rt/src/camera.rs", Role::Decides(Part::Rays)),
-    ("core-rt/src/render.rs", Role::Decides(Part::Rays)),
-    ("core-rt/src/samples.rs", Role::Decides(Part::Rays)),
-    ("core-rt/src/format.rs", Role::Decides(Part::Rays)),
-    ("firmware-rt/src/hits.rs", Role::Decides(Part::Rays)),
-    ("firmware-rt/src/marks.rs", Role::Decides(Part::Marks)),
-    ("firmware-rt/src/run.rs", Role::Decides(Part::Other)),
-    ("firmware-rt/src/window.rs", Role::Decides(Part::Other)),
+/// What files are for, by the end of their paths; all others serve whoever calls them.
+const DECIDED: [(&str, Part); 27] = [
+    ("-rt/src/bvh.rs", Part::Traversal),
+    ("/boxes.rs", Part::Traversal),
+    ("/triangle.rs", Part::Intersection),
+    ("/sphere.rs", Part::Intersection),
+    ("/resolve.rs", Part::Intersection),
+    ("core-rt/src/shade.rs", Part::Shading),
+    ("core-rt/src/light.rs", Part::Shading),
+    ("core-rt/src/whitted.rs", Part::Shading),
+    ("core-rt/src/albedo.rs", Part::Shading),
+    ("core-rt/src/texture.rs", Part::Shading),
+    ("core-rt/src/paint.rs", Part::Shading),
+    ("core-rt/src/srgb.rs", Part::Shading),
+    ("/colour.rs", Part::Shading),
+    ("/space.rs", Part::Shading),
+    ("/grid14.rs", Part::Shading),
+    ("/grid29.rs", Part::Shading),
+    ("/optics.rs", Part::Shading),
+    ("hanika/shading.rs", Part::Shading),
+    ("/ray.rs", Part::Rays),
+    ("core-rt/src/camera.rs", Part::Rays),
+    ("core-rt/src/render.rs", Part::Rays),
+    ("core-rt/src/samples.rs", Part::Rays),
+    ("core-rt/src/format.rs", Part::Rays),
+    ("firmware-rt/src/hits.rs", Part::Rays),
+    ("firmware-rt/src/marks.rs", Part::Marks),
+    ("firmware-rt/src/run.rs", Part::Other),
+    ("firmware-rt/src/window.rs", Part::Other),
 ];
 
 /// The folders of this project's code on chips.
 const FOLDERS: [&str; 3] = ["core-rt/src/", "float-rt/src/", "firmware-rt/src/"];
 
-fn role(file: &str) -> Role {
+fn decided(file: &str) -> Option<Part> {
     let file = file.replace('\\', "/");
     if !FOLDERS.iter().any(|folder| file.contains(folder)) {
-        return Role::Serves(Part::Library);
+        return None;
     }
-    let known = ROLES.into_iter().find(|(end, _)| file.ends_with(end));
-    known.map_or(Role::Serves(Part::Arithmetic), |(_, role)| role)
+    DECIDED.into_iter().find(|(end, _)| file.ends_with(end)).map(|(_, part)| part)
 }
 
 /// A run of bytes that are for one thing.
@@ -139,8 +108,8 @@ pub struct Range {
     pub start: u64,
     /// How many.
     pub size: u64,
-    /// What they are for.
-    pub part: Part,
+    /// What they are for; `None` for whoever calls them.
+    pub part: Option<Part>,
 }
 
 /// The shortest instruction of either chip, bytes.
@@ -169,7 +138,7 @@ pub fn parts(file: &ElfFile32<'_, Endianness>) -> Result<Vec<Range>, String> {
     Ok(ranges)
 }
 
-fn part_at(context: &Context<EndianSlice<'_, LittleEndian>>, address: u64) -> Result<Part, Error> {
+fn part_at(context: &Context<EndianSlice<'_, LittleEndian>>, address: u64) -> Result<Option<Part>, Error> {
     let mut frames = context.find_frames(address).skip_all_loads()?;
     let mut files = Vec::new();
     while let Some(frame) = frames.next()? {

@@ -16,8 +16,9 @@ use crate::symbols::Symbols;
 /// What a counter counts. Translating code anew, or from the middle of a block, gives equal events equal counters.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 enum Event {
-    /// The start of a run, by its address and its instructions; code in RAM may change.
-    Run(u64, Vec<Vec<u8>>),
+    /// The start of a run, by its address and its instructions; code in RAM may change. For a routine that is shared, the
+    /// symbol that called it.
+    Run(u64, Vec<Vec<u8>>, Option<usize>),
     /// That the conditional branch before this address was not taken.
     FallThrough(u64),
 }
@@ -97,15 +98,30 @@ impl Ledger {
         self.costs.len()
     }
 
-    /// The counter of a run of instructions that lie one after the other from an address on.
-    pub(crate) fn run(&mut self, address: u64, code: Vec<Vec<u8>>) -> usize {
+    /// The counter of a run of instructions that lie one after the other from an address on. Those of shared routines are
+    /// counted for the symbol before them, at first for `caller`.
+    pub(crate) fn run(&mut self, address: u64, code: Vec<Vec<u8>>, caller: Option<usize>) -> usize {
         let mut costs: BTreeMap<Option<usize>, Cost> = BTreeMap::new();
-        let mut at = address;
+        let (mut at, mut last) = (address, caller);
         for instruction in &code {
-            costs.entry(self.symbols.at(at)).or_default().add(self.isa.cost(instruction), 1);
+            let symbol = self.symbols.at(at);
+            if !self.is_shared(symbol) {
+                last = symbol;
+            }
+            costs.entry(last).or_default().add(self.isa.cost(instruction), 1);
             at += instruction.len() as u64;
         }
-        self.counter(Event::Run(address, code), costs.into_iter().collect())
+        self.counter(Event::Run(address, code, caller), costs.into_iter().collect())
+    }
+
+    /// The symbol that an instruction belongs to.
+    pub(crate) fn symbol(&self, address: u64) -> Option<usize> {
+        self.symbols.at(address)
+    }
+
+    /// Whether a symbol's instructions are counted for whoever calls it.
+    pub(crate) fn is_shared(&self, symbol: Option<usize>) -> bool {
+        symbol.is_some_and(|symbol| self.symbols.is_shared(symbol))
     }
 
     /// The counter of how often the conditional branch right before an address fell through to it.
@@ -235,10 +251,10 @@ mod tests {
     #[test]
     fn equal_events_share_a_counter() {
         let mut ledger = ledger("");
-        let run = ledger.run(0x40, vec![ADDS.to_vec()]);
-        assert_eq!(ledger.run(0x40, vec![ADDS.to_vec()]), run);
-        assert_ne!(ledger.run(0x42, vec![ADDS.to_vec()]), run);
-        assert_ne!(ledger.run(0x40, vec![BNE.to_vec()]), run);
+        let run = ledger.run(0x40, vec![ADDS.to_vec()], None);
+        assert_eq!(ledger.run(0x40, vec![ADDS.to_vec()], None), run);
+        assert_ne!(ledger.run(0x42, vec![ADDS.to_vec()], None), run);
+        assert_ne!(ledger.run(0x40, vec![BNE.to_vec()], None), run);
         assert_ne!(ledger.fall_through(0x40), run);
         assert_eq!(ledger.fall_through(0x40), ledger.fall_through(0x40));
         assert_eq!(ledger.counters(), 4);
@@ -247,10 +263,10 @@ mod tests {
     #[test]
     fn windows_are_differences_and_symbols_split_them() {
         let mut ledger = ledger("0x40 0x2 head\n0x42 0x2 branch\n");
-        ledger.run(0x40, vec![ADDS.to_vec(), BNE.to_vec()]);
+        ledger.run(0x40, vec![ADDS.to_vec(), BNE.to_vec()], None);
         ledger.begin(vec![5]);
         ledger.fall_through(0x44);
-        ledger.run(0x44, vec![ADDS.to_vec()]);
+        ledger.run(0x44, vec![ADDS.to_vec()], None);
         // 10 times around, the branch falling through at the last.
         ledger.end(&[15, 1, 1]);
         ledger.begin(vec![15, 1, 1]);
@@ -274,9 +290,26 @@ mod tests {
     }
 
     #[test]
+    fn shared_routines_are_counted_for_their_callers() {
+        let mut ledger = ledger("0x40 0x2 one\n0x50 0x4 caller\n0x60 0x2 two\n");
+        assert_eq!([0x40, 0x50, 0x60, 0x70].map(|at| ledger.is_shared(ledger.symbol(at))), [false, true, false, false]);
+        let routine = || vec![ADDS.to_vec(), ADDS.to_vec()];
+        let counters = [Some(0), Some(2), None].map(|caller| ledger.run(0x50, routine(), caller));
+        assert_eq!(counters, [0, 1, 2]);
+        ledger.begin(vec![0; 3]);
+        ledger.end(&[1, 10, 100]);
+        let report = report(ledger, &[1, 10, 100]);
+        let by_symbol: Vec<_> = (0..3).map(|index| &report["symbols"][index]["instructions"]).collect();
+        assert_eq!(
+            (by_symbol, &report["elsewhere"]["instructions"]),
+            (vec![&json!(2), &json!(0), &json!(20)], &json!(200))
+        );
+    }
+
+    #[test]
     fn kinds_of_rays_split_symbols() {
         let mut ledger = Ledger::new(Isa::Thumb, Symbols::parse("0x40 0x2 head\n").unwrap(), true);
-        ledger.run(0x40, vec![ADDS.to_vec(), BNE.to_vec()]);
+        ledger.run(0x40, vec![ADDS.to_vec(), BNE.to_vec()], None);
         ledger.pass(Mark::Shadow, &[3]); // outside
         ledger.begin(vec![5]);
         ledger.pass(Mark::Shadow, &[7]);
@@ -290,7 +323,7 @@ mod tests {
     fn ends_without_their_other_are_told() {
         let open = |edges: &[bool]| {
             let mut ledger = ledger("");
-            ledger.run(0x40, vec![ADDS.to_vec()]);
+            ledger.run(0x40, vec![ADDS.to_vec()], None);
             for (time, &begins) in (1..).zip(edges) {
                 if begins { ledger.begin(vec![time]) } else { ledger.end(&[time]) }
             }

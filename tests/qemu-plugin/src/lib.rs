@@ -18,7 +18,8 @@
 //!   semihosting or by a signal that it handles, such as SIGTERM.
 //! - `symbols` (optional): a file of lines `ADDRESS SIZE NAME`, both numbers as above, the name to the end of the line. An
 //!   instruction belongs to the last symbol that starts at or before it, if that reaches so far; of several that start
-//!   at one address the first line counts.
+//!   at one address the first line counts. The instructions of symbols called `caller` are counted for the symbol that was
+//!   executed last before them: they are routines that many parts of a program call.
 //!
 //! - `shadow`, `lit`, `reflection`, `refraction`, `next` (optional, all or none): addresses of the first instructions of five
 //!   functions, which a program calls to tell which [kind of ray](rays) it follows.

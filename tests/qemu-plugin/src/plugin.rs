@@ -1,5 +1,6 @@
 //! What QEMU calls.
 
+use std::collections::HashMap;
 use std::ffi::{CStr, c_char, c_int, c_uint, c_void};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, OnceLock, PoisonError};
@@ -31,6 +32,8 @@ struct Plugin {
     out: PathBuf,
     /// Where the last block ends, if it ended with a conditional branch, and else nowhere.
     fall_through: Entry,
+    /// One more than the index of the symbol that was executed last and is not shared; 0 for none.
+    caller: Entry,
     /// Taken by the report.
     state: Mutex<Option<State>>,
 }
@@ -39,6 +42,10 @@ struct State {
     ledger: Ledger,
     /// The numbers behind the ledger's counters.
     entries: Vec<&'static [Entry]>,
+    /// Runs of shared routines: their addresses and instructions.
+    shared: Vec<(u64, Vec<Vec<u8>>)>,
+    /// Their counters by run and caller.
+    callers: HashMap<(usize, u64), usize>,
 }
 
 static PLUGIN: OnceLock<Plugin> = OnceLock::new();
@@ -101,9 +108,12 @@ unsafe fn install(info: &Info, words: Result<Vec<&str>, String>) -> Result<&'sta
 
     // SAFETY: the version was checked above.
     let qemu = unsafe { Qemu::find() }.map_err(|error| format!("this QEMU is not as it says: {error}"))?;
-    let fall_through = qemu.entries(1).next().ok_or("no scoreboard")?;
-    let state = Mutex::new(Some(State { ledger: Ledger::new(isa, symbols, !marks.is_empty()), entries: Vec::new() }));
-    Ok(PLUGIN.get_or_init(|| Plugin { qemu, begin, end, marks, out, fall_through, state }))
+    let [fall_through, caller] = [(); 2].map(|()| qemu.entries(1).next());
+    let (fall_through, caller) = fall_through.zip(caller).ok_or("no scoreboard")?;
+    let ledger = Ledger::new(isa, symbols, !marks.is_empty());
+    let state = State { ledger, entries: Vec::new(), shared: Vec::new(), callers: HashMap::new() };
+    let state = Mutex::new(Some(state));
+    Ok(PLUGIN.get_or_init(|| Plugin { qemu, begin, end, marks, out, fall_through, caller, state }))
 }
 
 /// Instruments a block.
@@ -147,6 +157,15 @@ unsafe extern "C" fn on_fall_through(cpu: c_uint, entry: *mut c_void) {
     plugin.qemu.increment(unsafe { *entry.cast::<Entry>() }, cpu);
 }
 
+/// Before a run of a shared routine, whose number `run` is.
+unsafe extern "C" fn on_shared(cpu: c_uint, run: *mut c_void) {
+    let Some(plugin) = PLUGIN.get() else { return };
+    plugin.with_state(|state| {
+        let entry = state.called(&plugin.qemu, run.addr(), plugin.qemu.get(plugin.caller));
+        plugin.qemu.increment(entry, cpu);
+    });
+}
+
 /// Writes the report.
 unsafe extern "C" fn on_exit(_: Id, _: *mut c_void) {
     let Some(plugin) = PLUGIN.get() else { return };
@@ -183,6 +202,21 @@ impl State {
         &self.entries[counter / CHUNK][counter % CHUNK]
     }
 
+    /// The number that counts a run of a shared routine for one caller.
+    fn called(&mut self, qemu: &Qemu, run: usize, caller: u64) -> Entry {
+        let counter = match self.callers.get(&(run, caller)) {
+            Some(&counter) => counter,
+            None => {
+                let (address, code) = self.shared[run].clone();
+                let caller_symbol = usize::try_from(caller).ok().and_then(|caller| caller.checked_sub(1));
+                let counter = self.ledger.run(address, code, caller_symbol);
+                self.callers.insert((run, caller), counter);
+                counter
+            }
+        };
+        *self.entry(qemu, counter)
+    }
+
     /// Registers all that is to be done when the block is executed.
     ///
     /// # Safety
@@ -208,8 +242,17 @@ impl State {
         let runs = instructions.chunk_by(|(_, _, code), (_, next, _)| !isa.may_leave(code) && !edge(*next));
         for run in runs {
             let (first, address, _) = run[0];
-            let counter = self.ledger.run(address, run.iter().map(|(.., code)| code.clone()).collect());
-            let entry = *self.entry(qemu, counter);
+            let code: Vec<_> = run.iter().map(|(.., code)| code.clone()).collect();
+            let is_shared = self.ledger.is_shared(self.ledger.symbol(address));
+            let symbols = run.iter().rev().map(|&(_, address, _)| self.ledger.symbol(address));
+            let last = symbols.into_iter().find(|&symbol| !self.ledger.is_shared(symbol));
+            let entry = if is_shared {
+                self.shared.push((address, code));
+                None
+            } else {
+                let counter = self.ledger.run(address, code, None);
+                Some(*self.entry(qemu, counter))
+            };
             // SAFETY: the instruction is one of the block. The call comes before the addition, so that the one at the
             // beginning of a window is counted and the one at its end is not.
             unsafe {
@@ -220,7 +263,13 @@ impl State {
                 } else if let Some(mark) = mark(address) {
                     qemu.call(first, on_mark, std::ptr::without_provenance_mut(mark as usize));
                 }
-                qemu.count(first, entry);
+                match entry {
+                    Some(entry) => qemu.count(first, entry),
+                    None => qemu.call(first, on_shared, std::ptr::without_provenance_mut(self.shared.len() - 1)),
+                }
+                if let Some(last) = last {
+                    qemu.store(first, plugin.caller, last.map_or(0, |symbol| symbol as u64 + 1));
+                }
             }
         }
 
