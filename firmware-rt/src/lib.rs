@@ -2,7 +2,7 @@
 //!
 //! # Agreed on
 //! [`board`]s with their memory maps, [`frame`]s that carry the picture, the [`status`] that a run ends with, and what
-//! the picture of the nearest [`hits`] is.
+//! the picture of the nearest [`hits`] is. Which operations' [`costs`] are counted.
 //!
 //! # On the chip
 //! `run` checks the blob where it lies in flash and renders it tile by tile, between the marks of `window`,
@@ -14,6 +14,7 @@
 #![cfg_attr(not(any(feature = "host", test)), no_std)]
 
 pub mod board;
+pub mod costs;
 pub mod frame;
 pub mod hits;
 pub mod status;

@@ -7,7 +7,7 @@ use core_rt::stats::{RayKind, Stats};
 
 /// Passes a mark where the kind of ray changes.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Marks;
+pub(crate) struct Marks;
 
 impl Stats for Marks {
     #[inline(always)]

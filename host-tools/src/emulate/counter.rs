@@ -41,6 +41,9 @@ pub struct Counts {
     pub unpaired: u64,
     /// From reset to exit.
     pub run: Totals,
+    /// What each passage between the marks took, in order of time.
+    #[serde(default)]
+    pub windows: Vec<Totals>,
     /// Instructions between the marks by range of addresses, if that was asked for; a name may occur more than once.
     #[serde(default)]
     pub symbols: Vec<Named>,
