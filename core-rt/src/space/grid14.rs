@@ -244,7 +244,7 @@ impl Space for Grid14 {
     /// is below 2^19, and half a unit of the step makes it 2^-13 of a cube.
     #[inline]
     fn is_odd(point: Self::Point, across: usize, checker: &Checker) -> bool {
-        let step_q31 = ((checker.step_q63 >> (31 - (8 - POINT_BITS))) + 1 >> 1) as u32;
+        let step_q31 = (((checker.step_q63 >> (31 - (8 - POINT_BITS))) + 1) >> 1) as u32;
         let place = |axis: usize| {
             let start_q31 = (checker.start_q63[axis] >> 32) as u32;
             let moved = (point[axis] as u32).wrapping_mul(step_q31).wrapping_add(start_q31);
