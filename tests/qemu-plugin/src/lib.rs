@@ -47,7 +47,9 @@
 //!
 //! # How
 //! A translated block is cut into [runs](ledger) of instructions none of which but the last can leave the block, and an
-//! inline addition counts how often each run starts. Everything else follows at exit from these counts and the code.
+//! inline addition counts how often each run starts. Everything else follows at exit from these counts and the code. A run
+//! of a shared routine has a counter for each symbol that it is executed for: what is not shared leaves its symbol where
+//! the next shared run finds it. At each mark of a ray, what the counters rose since the last is the old kind's.
 
 mod api;
 mod arguments;
