@@ -48,13 +48,13 @@ pub(crate) fn arriving<P: Profile>(
     let cosine = SpaceOf::<P>::cosine(smooth.map_or(surface.normal, |smooth| smooth.normal), towards)?;
     let mut tint = WHITE;
     if P::NEEDS.has(Need::Shadows) {
+        stats.ray(RayKind::Shadow);
         let from = &Surface { point: smooth.map_or(surface.point, |smooth| smooth.lifted), ..*surface };
         let shadow = if is_point {
             P::Kernel::segment(scene.settings, from, light.place, hit)
         } else {
             P::Kernel::leaving(scene.settings, from, towards, hit)
         };
-        stats.ray(RayKind::Shadow);
         let blocked = shadow.is_some_and(|ray| {
             scene.bvh.any(&ray, stack, stats, |between| {
                 if P::NEEDS.has(Need::TintedShadow) {
@@ -65,9 +65,12 @@ pub(crate) fn arriving<P: Profile>(
                 }
             })
         });
+        // Told in either case apart: between the two, it would move code of firmware that is told nothing.
         if blocked {
+            stats.lit();
             return None;
         }
+        stats.lit();
     }
     let mut light_here = <SpaceOf<P> as Space>::Colour::light(&light.radiance);
     if P::NEEDS.has(Need::Falloff) && is_point && light.reach.mantissa != 0 {

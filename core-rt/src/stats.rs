@@ -26,11 +26,17 @@ pub trait Stats {
     /// A sphere test.
     #[inline(always)]
     fn sphere(&mut self) {}
-    /// A ray.
+    /// A ray: a mirrored one and one through a surface as it begins to wait, others as they begin.
     #[inline(always)]
     fn ray(&mut self, kind: RayKind) {
         let _ = kind;
     }
+    /// The shadow ray that was told of last has been followed to its end.
+    #[inline(always)]
+    fn lit(&mut self) {}
+    /// Of the mirrored rays and those through surfaces that were told of, the last that waits is taken up; or none is left.
+    #[inline(always)]
+    fn next(&mut self) {}
 }
 
 /// Counts nothing.

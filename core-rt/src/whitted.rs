@@ -64,6 +64,7 @@ pub(crate) fn radiance<P: Profile>(
                 total = total.plus(background(scene, &next).reflected(&share));
             }
         }
+        stats.next();
         let Some(next) = branches.pop() else { return total };
         (ray, share, depth) = next;
         hit = scene.bvh.closest(&ray, stack, stats);

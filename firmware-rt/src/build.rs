@@ -25,6 +25,9 @@ pub const HITS_VARIABLE: &str = "INTRAY_HITS";
 /// The variable that, set to 1, makes firmware count its work.
 pub const COUNT_VARIABLE: &str = "INTRAY_COUNT";
 
+/// The variable that, set to 1, makes firmware mark the kinds of ray.
+pub const MARKS_VARIABLE: &str = "INTRAY_MARKS";
+
 /// What is compiled in for a blob.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Traits {
@@ -82,7 +85,7 @@ impl Traits {
 /// # Errors
 /// Where the blob cannot be read, or no firmware can be built for it.
 pub fn script(board: &Board, constant: &str) -> io::Result<()> {
-    for variable in [BLOB_VARIABLE, HITS_VARIABLE, COUNT_VARIABLE] {
+    for variable in [BLOB_VARIABLE, HITS_VARIABLE, COUNT_VARIABLE, MARKS_VARIABLE] {
         println!("cargo::rerun-if-env-changed={variable}");
     }
     if env::var("CARGO_CFG_TARGET_OS").as_deref() != Ok("none") {
@@ -100,13 +103,13 @@ pub fn script(board: &Board, constant: &str) -> io::Result<()> {
         Ok("tile") => "Draw::Hits(firmware_rt::hits::Way::Tile)",
         _ => "Draw::Picture",
     };
-    let count = env::var(COUNT_VARIABLE).as_deref() == Ok("1");
+    let watched = [COUNT_VARIABLE, MARKS_VARIABLE].map(|variable| env::var(variable).as_deref() == Ok("1"));
     let embedded = asked.is_none().then_some((path, blob.len()));
 
     let out = PathBuf::from(env::var_os("OUT_DIR").ok_or_else(|| wrong("no OUT_DIR"))?);
     let is_riscv = env::var("CARGO_CFG_TARGET_ARCH").as_deref() == Ok("riscv32");
     fs::write(out.join("memory.x"), memory(board, traits.kernel, is_riscv))?;
-    fs::write(out.join("firmware.rs"), firmware(constant, kernel, &traits, draw, count, embedded))?;
+    fs::write(out.join("firmware.rs"), firmware(constant, kernel, &traits, draw, watched, embedded))?;
     println!("cargo::rustc-link-search={}", out.display());
     for argument in ["--nmagic", "-Tlink.x", "-Tdefmt.x"] {
         println!("cargo::rustc-link-arg-bins={argument}");
@@ -150,7 +153,7 @@ fn firmware(
     kernel: &str,
     traits: &Traits,
     draw: &str,
-    count: bool,
+    [count, marks]: [bool; 2],
     embedded: Option<(&Path, usize)>,
 ) -> String {
     let Traits { needs, depth, branches, .. } = traits;
@@ -171,7 +174,7 @@ fn firmware(
          impl Profile for This {{\n    type Kernel = {kernel};\n    const NEEDS: Needs = Needs::from_bits({needs:#x});\n}}\n\
          \n\
          impl Firmware for This {{\n    type Profile = Self;\n    const BOARD: &'static Board = &board::{board};\n    \
-         const DRAW: Draw = {draw};\n    const COUNT: bool = {count};\n}}\n\
+         const DRAW: Draw = {draw};\n    const COUNT: bool = {count};\n    const MARKS: bool = {marks};\n}}\n\
          \n\
          static mut STORAGE: Storage<{kernel}, {depth}, {branches}, {{ run::tile_bytes(Needs::from_bits({needs:#x}), {draw}) }}> = Storage::new();\n\
          {blob}"

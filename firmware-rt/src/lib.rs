@@ -2,10 +2,11 @@
 //!
 //! # Agreed on
 //! [`board`]s with their memory maps, [`frame`]s that carry the picture, the [`status`] that a run ends with, and what
-//! the picture of the nearest [`hits`] is.
+//! the picture of the nearest [`hits`] is. Which operations' [`costs`] are counted.
 //!
 //! # On the chip
-//! `run` checks the blob where it lies in flash and renders it tile by tile, between the marks of `window`.
+//! `run` checks the blob where it lies in flash and renders it tile by tile, between the marks of `window`,
+//! and with those of `marks` where rays are told apart.
 //! `transport` takes log and frames to the host, `stack` measures, `end` is how every run ends, well or not.
 //!
 //! # Building
@@ -13,6 +14,7 @@
 #![cfg_attr(not(any(feature = "host", test)), no_std)]
 
 pub mod board;
+pub mod costs;
 pub mod frame;
 pub mod hits;
 pub mod status;
@@ -22,6 +24,8 @@ pub mod build;
 
 #[cfg(target_os = "none")]
 pub mod end;
+#[cfg(target_os = "none")]
+mod marks;
 #[cfg(target_os = "none")]
 pub mod misbehave;
 #[cfg(target_os = "none")]

@@ -13,6 +13,7 @@ use zerocopy::{FromBytes, IntoBytes};
 use crate::board::{Board, Region};
 use crate::frame::{Begin, Report, TileHead};
 use crate::hits::{self, HITS_FORMAT, Way};
+use crate::marks::Marks;
 use crate::refusal::Refusal;
 use crate::status::Status;
 use crate::transport::{Error, Link, Wire};
@@ -52,6 +53,8 @@ pub trait Firmware {
     const DRAW: Draw;
     /// Whether work is counted; it then takes longer.
     const COUNT: bool;
+    /// Whether the kinds of ray are marked; it then takes a little longer.
+    const MARKS: bool;
 }
 
 /// All that rendering stores, for trees of at most `DEPTH` levels, pixels of which `BRANCHES` rays may wait, and tiles of at
@@ -89,6 +92,8 @@ pub fn run<F: Firmware, const DEPTH: usize, const BRANCHES: usize, const BYTES: 
     if F::COUNT {
         let mut counts = Counts::default();
         rendered::<F, _>(&mut workspace, &mut counts, |counts| *counts)
+    } else if F::MARKS {
+        rendered::<F, _>(&mut workspace, &mut Marks, |_| Counts::default())
     } else {
         rendered::<F, _>(&mut workspace, &mut NoStats, |_| Counts::default())
     }

@@ -34,7 +34,7 @@ fn seed(leading: u32) -> u32 {
 pub fn inverse_sqrt_u32(x: u32) -> u32 {
     debug_assert!(x >= 1 << 30);
     let y_q16 = seed(x >> 25);
-    let x_q14 = (x >> 16) + ((x >> 15) & 1); // at most 2^16, and then Y^2 is near 1/4
+    let x_q14 = ((x >> 15) + 1) >> 1; // at most 2^16, and then Y^2 is near 1/4
     let xyy_q30 = x_q14 * ((y_q16 * y_q16) >> 16); // near 2^30
     let factor_q15 = ((3u32 << 30) - xyy_q30 + (1 << 15)) >> 16; // (3 - X Y^2) / 2, near 1
     (y_q16 * factor_q15 + (1 << 14)) >> 15

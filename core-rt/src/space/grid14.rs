@@ -2,6 +2,8 @@
 //!
 //! Nothing here multiplies or divides in 64 bits, so that a Cortex-M0 shades at the price of `muls`.
 
+use core::num::NonZeroU32;
+
 use fixed::types::{I2F14, U16F16};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
@@ -22,6 +24,24 @@ pub(crate) const POINT_BITS: u32 = 4;
 #[repr(C)]
 pub struct Normal14(pub [i16; 3]);
 
+/// `v` scaled so that its largest component has 15 bits, rounded to nearest (and so to 2^15 at most) where it has more, and
+/// how many bits it has; `None` for zero.
+#[inline(always)]
+fn in_15_bits(v: Triple<i32>) -> Option<(Triple<i32>, u32)> {
+    // The highest bit of all magnitudes is that of the largest.
+    let [x, y, z] = v.map(i32::unsigned_abs);
+    let zeros = NonZeroU32::new(x | y | z)?.leading_zeros();
+    let v = match zeros.checked_sub(17) {
+        Some(up) => v.map(|c| c << up),
+        None => {
+            let down = 16 - zeros; // after a halving, for the sum with the rounding half to fit
+            let half = 1 << down >> 1;
+            v.map(|c| ((c >> 1) + half) >> down)
+        }
+    };
+    Some((v, u32::BITS - zeros))
+}
+
 /// `v` with length 1, each component within 2^-12.5 of true; `None` for zero. Any `v` that does not hold -2^31.
 ///
 /// `v` is scaled to 15 bits (rounded where it has more), so that its squares sum to less than 2^32. That sum, shifted
@@ -29,13 +49,9 @@ pub struct Normal14(pub [i16; 3]);
 /// 2^-15 a component. (v <= 2^15) * (y <= 2^15) fits.
 #[inline]
 pub(crate) fn normalise(v: Triple<i32>) -> Option<Triple<I2F14>> {
-    let bits = bits(v);
-    if bits == 0 {
-        return None;
-    }
-    let v = if bits > 15 { v.map(|c| round_shift(c >> 1, bits - 16)) } else { v.map(|c| c << (15 - bits)) };
+    let (v, _) = in_15_bits(v)?;
     let square: u32 = v.iter().map(|&c| (c * c) as u32).sum();
-    let half_shift = square.leading_zeros() / 2; // 0 or 1: the square is at least 2^28
+    let half_shift = u32::from(square < 1 << 30); // the square is at least 2^28
     let y_q15 = (inverse_sqrt_u32(square << (2 * half_shift)) >> 1) as i32;
     // v / sqrt(square) = v y 2^half_shift / 2^30; to Q14.
     Some(v.map(|c| I2F14::from_bits(round_shift(c * y_q15, 16 - half_shift) as i16)))
@@ -201,12 +217,10 @@ impl Space for Grid14 {
     /// s / 2 is `mantissa / 2^(16 + log2_d)`, low by up to 2^-14 and high by 2^-15 since s is truncated to 16 bits.
     #[inline]
     fn faded(light: Radiance, from: Self::Point, to: Self::Point, reach: &Reach) -> Radiance {
-        let v = sub(to, from);
-        let bits = bits(v);
-        if bits == 0 || reach.mantissa == 0 {
+        if reach.mantissa == 0 {
             return light;
         }
-        let v = if bits > 15 { v.map(|c| round_shift(c >> 1, bits - 16)) } else { v.map(|c| c << (15 - bits)) };
+        let Some((v, bits)) = in_15_bits(sub(to, from)) else { return light };
         let square: u32 = v.iter().map(|&c| (c * c) as u32).sum();
         let r = reciprocal(square >> 1);
         let factor_q32 = u32::from(reach.mantissa) * r.mantissa;

@@ -78,7 +78,7 @@ pub(crate) fn normalise<F: Fraction>(v: Triple<i64>) -> Option<Triple<FixedI32<F
     }
     let v = if bits > 31 { v.map(|c| round_shift(c, bits - 31)) } else { v.map(|c| c << (31 - bits)) };
     let square: u64 = v.iter().map(|&c| (c * c) as u64).sum();
-    let half_shift = square.leading_zeros() / 2; // 0 or 1: the square is at least 2^60
+    let half_shift = u32::from(square < 1 << 62); // the square is at least 2^60
     let y_q31 = (inverse_sqrt_u64(square << (2 * half_shift)) >> 1) as i64;
     // v / sqrt(square) = v y 2^half_shift / 2^62.
     Some(v.map(|c| saturated(round_shift(c * y_q31, 62 - F::U32 - half_shift))))

@@ -15,6 +15,7 @@ use serde::Serialize;
 use super::failure::{Failure, warn};
 use super::input::{Scene, SceneArguments};
 use super::{output, progress};
+use crate::emulate::breakdown::Breakdown;
 use crate::emulate::counter::{Counter, Counts};
 use crate::emulate::elf::Elf;
 use crate::emulate::firmware::{self, Wanted};
@@ -40,6 +41,10 @@ pub(super) struct Arguments {
     /// Find the nearest hits of camera rays and nothing else, and show the triangles' numbers as colours
     #[arg(long, value_enum)]
     hits: Option<Hits>,
+
+    /// Count the instructions by part of the program and by kind of ray
+    #[arg(long)]
+    breakdown: bool,
 
     /// Stop QEMU after so long
     #[arg(long, value_name = "SECONDS", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..))]
@@ -102,6 +107,8 @@ struct Report {
     ram_bytes: u64,
     stack_bytes: u64,
     elf: PathBuf,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    breakdown: Option<Breakdown>,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -125,6 +132,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let spinner = progress::spinner("building the firmware");
     let elf = wanted.provide().map_err(failure)?;
     let counting = Wanted { count: true, ..wanted }.provide().map_err(failure)?;
+    let marked = arguments.breakdown.then(|| wanted.provide_marked()).transpose().map_err(failure)?;
     let counter = Counter::provide(&machine);
     spinner.finish_and_clear();
     let counter = counter.inspect_err(|reason| warn(format_args!("instructions are not counted: {reason}"))).ok();
@@ -144,8 +152,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if first != second {
         return Err(failure(EmulateError::Unequal { board: board.name, first, second }));
     }
+    let breakdown = match (&marked, &counter) {
+        (Some(marked), Some(counter)) => {
+            let third = run(marked, Some(&counter.by_part()), "breaking down", false)?;
+            Some(broken_down(&outcome, &counted, &third).map_err(failure)?)
+        }
+        _ => None,
+    };
     outcome.picture.write_png(&arguments.output)?;
-    let report = report(arguments, board, &scene, &elf, outcome, &counted);
+    let report = Report { breakdown, ..report(arguments, board, &scene, &elf, outcome, &counted) };
     if arguments.json { output::json(&report) } else { output::line(&text(arguments, &report)) }
 }
 
@@ -165,6 +180,15 @@ impl Observer for Shown<'_> {
     fn pixels(&mut self, count: u64) {
         self.bar.inc(count);
     }
+}
+
+/// What the instructions were for, from runs without marks, with counts of rays, and with marks.
+fn broken_down(plain: &Outcome, counted: &Outcome, marked: &Outcome) -> Result<Breakdown, EmulateError> {
+    let instructions = |outcome: &Outcome| outcome.counts.as_ref().map_or(0, |counts| counts.instructions);
+    let work = &counted.report;
+    let rays = [work.primary_rays, work.shadow_rays, work.reflection_rays, work.refraction_rays];
+    let none = || EmulateError::Counter("nothing was counted".into());
+    Breakdown::new(marked.counts.as_ref().ok_or_else(none)?, instructions(plain), rays)
 }
 
 fn report(
@@ -204,6 +228,7 @@ fn report(
         ram_bytes: elf.static_bytes + u64::from(report.stack_bytes),
         stack_bytes: report.stack_bytes.into(),
         elf: elf.path().into(),
+        breakdown: None,
     }
 }
 
@@ -214,10 +239,11 @@ fn text(arguments: &Arguments, report: &Report) -> String {
         (Some(all), Some(per_ray)) => format!("{all} instructions, {per_ray:.0} a ray"),
         _ => "instructions not counted".into(),
     };
+    let breakdown = report.breakdown.as_ref().map_or_else(String::new, |breakdown| format!("\n{}", breakdown.table()));
     format!(
         "{}: {}x{} by {} on {} ({}), {} rays: {instructions}, {:.1} box and {:.1} triangle tests a ray, CRC-32 {}\n\
          flash {} bytes of code and {} of scene; RAM {} bytes, {} of them stack\n\
-         {}",
+         {}{breakdown}",
         arguments.output.display(),
         report.width,
         report.height,

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -9,15 +10,25 @@ use serde::{Deserialize, Serialize};
 use super::EmulateError;
 use super::elf::Elf;
 use super::machine::{Machine, doubled};
+use super::parts::{Part, Range};
 use super::repository::Repository;
 use crate::files;
 
 /// The version of QEMU that has the plugin's API.
 const QEMU: u32 = 10;
 
+/// What the plugin counts for whoever calls it.
+const SHARED: &str = "caller";
+
+/// Where no instruction is.
+const NOWHERE: u64 = u64::MAX - 1;
+
 /// The plugin, built.
 #[derive(Clone, Debug)]
-pub struct Counter(PathBuf);
+pub struct Counter {
+    plugin: PathBuf,
+    by_part: bool,
+}
 
 /// What was counted.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
@@ -30,6 +41,21 @@ pub struct Counts {
     pub unpaired: u64,
     /// From reset to exit.
     pub run: Totals,
+    /// What each passage between the marks took, in order of time.
+    #[serde(default)]
+    pub windows: Vec<Totals>,
+    /// Instructions between the marks by range of addresses, if that was asked for; a name may occur more than once.
+    #[serde(default)]
+    pub symbols: Vec<Named>,
+}
+
+/// Instructions of a range of addresses.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub struct Named {
+    /// What it is for.
+    pub name: String,
+    /// How many, for primary, shadow, mirrored rays and rays through surfaces, if these were told apart.
+    pub rays: Option<[u64; 4]>,
 }
 
 /// Instructions of a part of a run.
@@ -53,15 +79,42 @@ impl Counter {
         repository.cargo(&["build", "--release", "--package", "qemu-plugin"], &[])?;
         let name = format!("{}qemu_plugin{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
         let path = repository.target().join("release").join(name);
-        if path.is_file() { Ok(Self(path)) } else { Err(format!("{}: not built", path.display())) }
+        if path.is_file() {
+            Ok(Self { plugin: path, by_part: false })
+        } else {
+            Err(format!("{}: not built", path.display()))
+        }
+    }
+
+    /// The same, to count for a [breakdown](super::breakdown) of a firmware with marks of rays.
+    #[must_use]
+    pub fn by_part(&self) -> Self {
+        Self { by_part: true, ..self.clone() }
     }
 
     /// What QEMU is to be told, for the counts of a firmware to be written to `out`.
     pub(super) fn argument(&self, elf: &Elf, out: &Path) -> Result<OsString, EmulateError> {
         let [begin, end] = elf.window.ok_or_else(|| elf.unfit("no marks between which to count".into()))?;
-        let mut argument = doubled(&self.0);
+        let mut argument = doubled(&self.plugin);
         argument.push(format!(",begin={begin:#x},end={end:#x},out="));
         argument.push(doubled(out));
+        if self.by_part {
+            let parts = out.with_extension("parts");
+            let mut list = String::new();
+            for Range { start, size, part } in elf.parts()? {
+                // A string takes text.
+                let name = part.map_or(SHARED, Part::name);
+                let _ = writeln!(list, "{start:#x} {size:#x} {name}");
+            }
+            files::write_atomically(&parts, list.as_bytes())?;
+            argument.push(",symbols=");
+            argument.push(doubled(&parts));
+            for mark in ["shadow", "lit", "reflection", "refraction", "next"] {
+                // A mark that no ray of the scene passes was not linked.
+                let address = elf.symbol(&format!("intray_{mark}")).unwrap_or(NOWHERE);
+                argument.push(format!(",{mark}={address:#x}"));
+            }
+        }
         Ok(argument)
     }
 }

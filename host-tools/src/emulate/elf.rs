@@ -8,6 +8,7 @@ use object::read::elf::ElfFile32;
 use object::{Endianness, Object, ObjectSection, ObjectSymbol, SectionFlags, SectionKind};
 
 use super::EmulateError;
+use super::parts::{self, Range};
 use crate::files;
 
 /// A firmware's file.
@@ -90,6 +91,16 @@ impl Elf {
     pub fn symbol(&self, name: &str) -> Option<u64> {
         let file = ElfFile32::<Endianness>::parse(self.bytes.as_slice()).ok()?;
         address(&file, name)
+    }
+
+    /// What its code is for.
+    ///
+    /// # Errors
+    /// Where its debug information cannot be read.
+    pub fn parts(&self) -> Result<Vec<Range>, EmulateError> {
+        let unfit = |reason: String| self.unfit(reason);
+        let file = ElfFile32::<Endianness>::parse(self.bytes.as_slice()).map_err(|error| unfit(error.to_string()))?;
+        parts::parts(&file).map_err(unfit)
     }
 
     pub(super) fn unfit(&self, reason: String) -> EmulateError {

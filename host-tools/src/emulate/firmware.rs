@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use firmware_rt::board::Board;
-use firmware_rt::build::{BLOB_VARIABLE, COUNT_VARIABLE, HITS_VARIABLE, Traits};
+use firmware_rt::build::{BLOB_VARIABLE, COUNT_VARIABLE, HITS_VARIABLE, MARKS_VARIABLE, Traits};
 use firmware_rt::hits::Way;
 
 use super::EmulateError;
@@ -75,32 +75,44 @@ impl Wanted<'_> {
         self.provide_over(Transport::Semihosting)
     }
 
+    /// The firmware for QEMU that marks the kinds of ray, for a [breakdown](super::breakdown), built if need be.
+    ///
+    /// # Errors
+    /// Where it cannot be built.
+    pub fn provide_marked(&self) -> Result<Elf, EmulateError> {
+        self.provide_as(Transport::Semihosting, true)
+    }
+
     /// The firmware that reaches the host in some way, built if need be.
     ///
     /// # Errors
     /// Where it cannot be built.
     pub fn provide_over(&self, transport: Transport) -> Result<Elf, EmulateError> {
+        self.provide_as(transport, false)
+    }
+
+    fn provide_as(&self, transport: Transport, marks: bool) -> Result<Elf, EmulateError> {
         let damaged = EmulateError::Damaged("the blob has no header");
         let traits = Traits::of(self.blob).ok_or(damaged)?;
         check(self.board, &traits)?;
         let repository = Repository::find()?;
         let folder = repository.target().join("firmware");
         fs::create_dir_all(&folder).map_err(EmulateError::folder)?;
-        let path = folder.join(format!("{}.elf", self.name(&traits, transport)));
+        let path = folder.join(format!("{}.elf", self.name(&traits, transport, marks)));
         let origin_path = path.with_extension("origin");
         // One at a time: cargo has one place for all profiles of a package.
         let lock = File::create(folder.join("lock")).and_then(|file| file.lock().map(|()| file));
         let _lock = lock.map_err(EmulateError::folder)?;
         let origin = origin(repository.root(), self.board.package).map_err(EmulateError::folder)?;
         if !path.is_file() || !fs::read_to_string(&origin_path).is_ok_and(|made_from| made_from == origin) {
-            self.build(&repository, &path, transport)?;
+            self.build(&repository, &path, transport, marks)?;
             files::write_atomically(&origin_path, origin.as_bytes())?;
         }
         Elf::read(&path, self.board)
     }
 
     /// Board, kernel, profile and transport.
-    fn name(&self, traits: &Traits, transport: Transport) -> String {
+    fn name(&self, traits: &Traits, transport: Transport, marks: bool) -> String {
         let kernel = engine::by_id(traits.kernel).map_or("unknown", |engine| engine.name());
         let hits = match self.hits {
             None => "",
@@ -108,15 +120,22 @@ impl Wanted<'_> {
             Some(Way::Tile) => "-tile",
         };
         let count = if self.count { "-count" } else { "" };
+        let marks = if marks { "-marks" } else { "" };
         let transport = match transport {
             Transport::Semihosting => "",
             Transport::Rtt => "-rtt",
         };
         let Traits { needs, depth, branches, .. } = traits;
-        format!("{}-{kernel}-{needs:x}-{depth}-{branches}{hits}{count}{transport}", self.board.name)
+        format!("{}-{kernel}-{needs:x}-{depth}-{branches}{hits}{count}{marks}{transport}", self.board.name)
     }
 
-    fn build(&self, repository: &Repository, path: &Path, transport: Transport) -> Result<(), EmulateError> {
+    fn build(
+        &self,
+        repository: &Repository,
+        path: &Path,
+        transport: Transport,
+        marks: bool,
+    ) -> Result<(), EmulateError> {
         let Board { target, package, .. } = *self.board;
         // A name that stays the same from build to build, so that cargo knows what it has.
         let blob = path.with_extension("blob");
@@ -126,10 +145,12 @@ impl Wanted<'_> {
             Some(Way::Single) => "single",
             Some(Way::Tile) => "tile",
         };
-        let variables: [(&str, OsString); 3] = [
+        let set = |is_set| if is_set { "1" } else { "0" };
+        let variables: [(&str, OsString); 4] = [
             (BLOB_VARIABLE, blob.clone().into()),
             (HITS_VARIABLE, hits.into()),
-            (COUNT_VARIABLE, if self.count { "1" } else { "0" }.into()),
+            (COUNT_VARIABLE, set(self.count).into()),
+            (MARKS_VARIABLE, set(marks).into()),
         ];
         let mut arguments =
             vec!["build", "--package", package, "--bin", package, "--target", target, "--profile", "firmware"];

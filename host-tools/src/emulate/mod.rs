@@ -3,6 +3,7 @@
 //! The picture comes in [`frames`] through a file, the [`log`] through standard output, the end as an exit status, and
 //! the number of instructions from a [plugin](counter) that watches from outside.
 
+pub mod breakdown;
 pub mod counter;
 pub mod elf;
 mod error;
@@ -10,6 +11,7 @@ pub mod firmware;
 pub mod frames;
 pub mod log;
 pub mod machine;
+pub mod parts;
 pub mod process;
 mod repository;
 
@@ -100,6 +102,22 @@ impl Run<'_> {
     /// # Errors
     /// Where QEMU cannot be run, the time is up, or the firmware ends in anything but a whole picture.
     pub fn perform(&self, observer: &mut impl Observer) -> Result<Outcome, EmulateError> {
+        let mut frames = Frames::default();
+        let counts = self.listen(observer, &mut frames)?;
+        let (picture, report) = frames.finish()?;
+        Ok(Outcome { picture, report, counts })
+    }
+
+    /// Runs a firmware that sends no picture to its end, and counts.
+    ///
+    /// # Errors
+    /// As [`Run::perform`], and where there is no counter.
+    pub fn count(&self) -> Result<Counts, EmulateError> {
+        let counts = self.listen(&mut Vec::new(), &mut Frames::default())?;
+        counts.ok_or_else(|| EmulateError::Counter("there is none".into()))
+    }
+
+    fn listen(&self, observer: &mut impl Observer, frames: &mut Frames) -> Result<Option<Counts>, EmulateError> {
         let machine = Machine::of(self.board);
         let folder = tempfile::Builder::new().prefix("intray-").tempdir().map_err(EmulateError::folder)?;
         let mut pieces = Vec::new();
@@ -114,7 +132,6 @@ impl Run<'_> {
         command.current_dir(folder.path());
 
         let mut log = Log::new(self.elf)?;
-        let mut frames = Frames::default();
         let mut process = Process::start(command, &folder.path().join(frame_file()), self.limit)?;
         while let Some(received) = process.listen()? {
             log.take(&received.output, &mut |line| observer.log(line));
@@ -122,9 +139,7 @@ impl Run<'_> {
         }
         let status = process.status();
         machine.judge(status, process.complaints())?;
-        let (picture, report) = frames.finish()?;
-        let counts = self.counter.map(|_| Counts::read(&out)).transpose()?;
-        Ok(Outcome { picture, report, counts })
+        self.counter.map(|_| Counts::read(&out)).transpose()
     }
 }
 

@@ -185,13 +185,13 @@ impl Qemu {
         unsafe { (self.register_vcpu_insn_exec_inline_per_vcpu)(instruction, INLINE_STORE_U64, entry, value) }
     }
 
-    /// Calls a function before an instruction.
+    /// Calls a function with `data` before an instruction.
     ///
     /// # Safety
     /// The instruction must be valid, as of [`Self::instructions`].
-    pub(crate) unsafe fn call(&self, instruction: *mut Instruction, function: OnExecution) {
+    pub(crate) unsafe fn call(&self, instruction: *mut Instruction, function: OnExecution, data: *mut c_void) {
         // SAFETY: the caller's.
-        unsafe { (self.register_vcpu_insn_exec_cb)(instruction, function, CB_NO_REGS, std::ptr::null_mut()) }
+        unsafe { (self.register_vcpu_insn_exec_cb)(instruction, function, CB_NO_REGS, data) }
     }
 
     /// Before a block, calls a function with a number's place if another number has a value, then stores one there.

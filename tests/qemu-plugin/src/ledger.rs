@@ -10,13 +10,15 @@ use std::collections::{BTreeMap, HashMap};
 use serde::Serialize;
 
 use crate::isa::{Cost, Isa};
+use crate::rays::{KINDS, Mark, Rays};
 use crate::symbols::Symbols;
 
 /// What a counter counts. Translating code anew, or from the middle of a block, gives equal events equal counters.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 enum Event {
-    /// The start of a run, by its address and its instructions; code in RAM may change.
-    Run(u64, Vec<Vec<u8>>),
+    /// The start of a run, by its address and its instructions; code in RAM may change. For a routine that is shared, the
+    /// symbol that called it.
+    Run(u64, Vec<Vec<u8>>, Option<usize>),
     /// That the conditional branch before this address was not taken.
     FallThrough(u64),
 }
@@ -35,6 +37,8 @@ pub(crate) struct Ledger {
     inside: Vec<u64>,
     windows: Vec<Cost>,
     unpaired: u64,
+    /// Where rays are marked.
+    rays: Option<Rays>,
 }
 
 /// The output.
@@ -63,11 +67,14 @@ struct Named {
     name: String,
     #[serde(flatten)]
     tally: Tally,
+    /// The instructions for each kind of ray.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rays: Option<[i64; KINDS]>,
 }
 
 impl Ledger {
     /// Without counters.
-    pub(crate) fn new(isa: Isa, symbols: Symbols) -> Self {
+    pub(crate) fn new(isa: Isa, symbols: Symbols, has_rays: bool) -> Self {
         Self {
             isa,
             symbols,
@@ -77,6 +84,7 @@ impl Ledger {
             inside: Vec::new(),
             windows: Vec::new(),
             unpaired: 0,
+            rays: has_rays.then(Rays::default),
         }
     }
 
@@ -90,15 +98,30 @@ impl Ledger {
         self.costs.len()
     }
 
-    /// The counter of a run of instructions that lie one after the other from an address on.
-    pub(crate) fn run(&mut self, address: u64, code: Vec<Vec<u8>>) -> usize {
+    /// The counter of a run of instructions that lie one after the other from an address on. Those of shared routines are
+    /// counted for the symbol before them, at first for `caller`.
+    pub(crate) fn run(&mut self, address: u64, code: Vec<Vec<u8>>, caller: Option<usize>) -> usize {
         let mut costs: BTreeMap<Option<usize>, Cost> = BTreeMap::new();
-        let mut at = address;
+        let (mut at, mut last) = (address, caller);
         for instruction in &code {
-            costs.entry(self.symbols.at(at)).or_default().add(self.isa.cost(instruction), 1);
+            let symbol = self.symbols.at(at);
+            if !self.is_shared(symbol) {
+                last = symbol;
+            }
+            costs.entry(last).or_default().add(self.isa.cost(instruction), 1);
             at += instruction.len() as u64;
         }
-        self.counter(Event::Run(address, code), costs.into_iter().collect())
+        self.counter(Event::Run(address, code, caller), costs.into_iter().collect())
+    }
+
+    /// The symbol that an instruction belongs to.
+    pub(crate) fn symbol(&self, address: u64) -> Option<usize> {
+        self.symbols.at(address)
+    }
+
+    /// Whether a symbol's instructions are counted for whoever calls it.
+    pub(crate) fn is_shared(&self, symbol: Option<usize>) -> bool {
+        symbol.is_some_and(|symbol| self.symbols.is_shared(symbol))
     }
 
     /// The counter of how often the conditional branch right before an address fell through to it.
@@ -119,6 +142,9 @@ impl Ledger {
         if self.open.is_some() {
             self.unpaired += 1;
         } else {
+            if let Some(rays) = &mut self.rays {
+                rays.begin(&now);
+            }
             self.open = Some(now);
         }
     }
@@ -129,6 +155,9 @@ impl Ledger {
             self.unpaired += 1;
             return;
         };
+        if let Some(rays) = &mut self.rays {
+            self.unpaired += u64::from(!rays.end(now));
+        }
         self.inside.resize(now.len(), 0);
         let mut window = Cost::default();
         for (counter, &value) in now.iter().enumerate() {
@@ -138,6 +167,13 @@ impl Ledger {
             self.costs[counter].iter().for_each(|&(_, cost)| window.add(cost, rise as i64));
         }
         self.windows.push(window);
+    }
+
+    /// A mark of a ray is passed, the counters standing as given; outside the windows none counts.
+    pub(crate) fn pass(&mut self, mark: Mark, now: &[u64]) {
+        if let (Some(rays), Some(_)) = (&mut self.rays, &self.open) {
+            self.unpaired += u64::from(!rays.pass(mark, now));
+        }
     }
 
     /// The sums at exit, the counters standing as given.
@@ -157,6 +193,17 @@ impl Ledger {
                 symbol.map_or(&mut elsewhere, |index| &mut by_symbol[index]).add(cost, times as i64);
             }
         }
+        let mut by_ray = vec![[0; KINDS]; self.symbols.names().len()];
+        if let Some(rays) = &self.rays {
+            for (counter, costs) in self.costs.iter().enumerate() {
+                let rises = rays.rises(counter);
+                for (symbol, cost) in costs.iter().filter_map(|&(symbol, cost)| Some((symbol?, cost))) {
+                    for (sum, rise) in by_ray[symbol].iter_mut().zip(rises) {
+                        *sum += cost.instructions * rise as i64;
+                    }
+                }
+            }
+        }
         let mut sum = Cost::default();
         self.windows.iter().for_each(|&window| sum.add(window, 1));
 
@@ -170,7 +217,15 @@ impl Ledger {
             sum: tally(sum),
             windows: self.windows.iter().copied().map(tally).collect(),
             unpaired: self.unpaired,
-            symbols: names.zip(by_symbol).map(|(name, cost)| Named { name, tally: tally(cost) }).collect(),
+            symbols: names
+                .zip(by_symbol)
+                .zip(by_ray)
+                .map(|((name, cost), by_ray)| Named {
+                    name,
+                    tally: tally(cost),
+                    rays: self.rays.as_ref().map(|_| by_ray),
+                })
+                .collect(),
             elsewhere: tally(elsewhere),
             run: tally(run),
         }
@@ -186,7 +241,7 @@ mod tests {
     const BNE: [u8; 2] = [0xfc, 0xd1];
 
     fn ledger(symbols: &str) -> Ledger {
-        Ledger::new(Isa::Thumb, Symbols::parse(symbols).unwrap())
+        Ledger::new(Isa::Thumb, Symbols::parse(symbols).unwrap(), false)
     }
 
     fn report(ledger: Ledger, now: &[u64]) -> Value {
@@ -196,10 +251,10 @@ mod tests {
     #[test]
     fn equal_events_share_a_counter() {
         let mut ledger = ledger("");
-        let run = ledger.run(0x40, vec![ADDS.to_vec()]);
-        assert_eq!(ledger.run(0x40, vec![ADDS.to_vec()]), run);
-        assert_ne!(ledger.run(0x42, vec![ADDS.to_vec()]), run);
-        assert_ne!(ledger.run(0x40, vec![BNE.to_vec()]), run);
+        let run = ledger.run(0x40, vec![ADDS.to_vec()], None);
+        assert_eq!(ledger.run(0x40, vec![ADDS.to_vec()], None), run);
+        assert_ne!(ledger.run(0x42, vec![ADDS.to_vec()], None), run);
+        assert_ne!(ledger.run(0x40, vec![BNE.to_vec()], None), run);
         assert_ne!(ledger.fall_through(0x40), run);
         assert_eq!(ledger.fall_through(0x40), ledger.fall_through(0x40));
         assert_eq!(ledger.counters(), 4);
@@ -208,10 +263,10 @@ mod tests {
     #[test]
     fn windows_are_differences_and_symbols_split_them() {
         let mut ledger = ledger("0x40 0x2 head\n0x42 0x2 branch\n");
-        ledger.run(0x40, vec![ADDS.to_vec(), BNE.to_vec()]);
+        ledger.run(0x40, vec![ADDS.to_vec(), BNE.to_vec()], None);
         ledger.begin(vec![5]);
         ledger.fall_through(0x44);
-        ledger.run(0x44, vec![ADDS.to_vec()]);
+        ledger.run(0x44, vec![ADDS.to_vec()], None);
         // 10 times around, the branch falling through at the last.
         ledger.end(&[15, 1, 1]);
         ledger.begin(vec![15, 1, 1]);
@@ -235,10 +290,40 @@ mod tests {
     }
 
     #[test]
+    fn shared_routines_are_counted_for_their_callers() {
+        let mut ledger = ledger("0x40 0x2 one\n0x50 0x4 caller\n0x60 0x2 two\n");
+        assert_eq!([0x40, 0x50, 0x60, 0x70].map(|at| ledger.is_shared(ledger.symbol(at))), [false, true, false, false]);
+        let routine = || vec![ADDS.to_vec(), ADDS.to_vec()];
+        let counters = [Some(0), Some(2), None].map(|caller| ledger.run(0x50, routine(), caller));
+        assert_eq!(counters, [0, 1, 2]);
+        ledger.begin(vec![0; 3]);
+        ledger.end(&[1, 10, 100]);
+        let report = report(ledger, &[1, 10, 100]);
+        let by_symbol: Vec<_> = (0..3).map(|index| &report["symbols"][index]["instructions"]).collect();
+        assert_eq!(
+            (by_symbol, &report["elsewhere"]["instructions"]),
+            (vec![&json!(2), &json!(0), &json!(20)], &json!(200))
+        );
+    }
+
+    #[test]
+    fn kinds_of_rays_split_symbols() {
+        let mut ledger = Ledger::new(Isa::Thumb, Symbols::parse("0x40 0x2 head\n").unwrap(), true);
+        ledger.run(0x40, vec![ADDS.to_vec(), BNE.to_vec()], None);
+        ledger.pass(Mark::Shadow, &[3]); // outside
+        ledger.begin(vec![5]);
+        ledger.pass(Mark::Shadow, &[7]);
+        ledger.pass(Mark::Lit, &[12]);
+        ledger.end(&[13]);
+        let report = report(ledger, &[20]);
+        assert_eq!((&report["symbols"][0]["rays"], &report["unpaired"]), (&json!([3, 5, 0, 0]), &json!(0)));
+    }
+
+    #[test]
     fn ends_without_their_other_are_told() {
         let open = |edges: &[bool]| {
             let mut ledger = ledger("");
-            ledger.run(0x40, vec![ADDS.to_vec()]);
+            ledger.run(0x40, vec![ADDS.to_vec()], None);
             for (time, &begins) in (1..).zip(edges) {
                 if begins { ledger.begin(vec![time]) } else { ledger.end(&[time]) }
             }

@@ -18,7 +18,11 @@
 //!   semihosting or by a signal that it handles, such as SIGTERM.
 //! - `symbols` (optional): a file of lines `ADDRESS SIZE NAME`, both numbers as above, the name to the end of the line. An
 //!   instruction belongs to the last symbol that starts at or before it, if that reaches so far; of several that start
-//!   at one address the first line counts.
+//!   at one address the first line counts. The instructions of symbols called `caller` are counted for the symbol that was
+//!   executed last before them: they are routines that many parts of a program call.
+//!
+//! - `shadow`, `lit`, `reflection`, `refraction`, `next` (optional, all or none): addresses of the first instructions of five
+//!   functions, which a program calls to tell which [kind of ray](rays) it follows.
 //!
 //! A comma in a path is doubled, as always on QEMU's command line. What is wrong with the arguments, or with the version
 //! of QEMU, is said on stderr, and QEMU exits with status 1 before the guest starts.
@@ -30,8 +34,10 @@
 //!   `cortex-m0` and `cortex-m0plus`; empty for RISC-V.
 //! - `windows`: an array with `instructions` and `cycles` of each window, in order of time.
 //! - `unpaired`: how often `begin` was met in an open window (which goes on) or `end` outside one (which is ignored), plus
-//!   1 if the last window was still open at the exit (which closes it). 0 unless something is wrong.
-//! - `symbols`: an array with `name`, `instructions` and `cycles` of each symbol within the windows, in the file's order.
+//!   1 if the last window was still open at the exit (which closes it), and how often marks of rays were out of order. 0
+//!   unless something is wrong.
+//! - `symbols`: an array with `name`, `instructions` and `cycles` of each symbol within the windows, in the file's order; and
+//!   with `rays`, the instructions for primary, shadow, reflected and refracted rays, where these are marked.
 //! - `elsewhere`: `instructions` and `cycles` within the windows but outside all symbols.
 //! - `run`: `instructions` and `cycles` from reset to exit.
 //!
@@ -41,13 +47,16 @@
 //!
 //! # How
 //! A translated block is cut into [runs](ledger) of instructions none of which but the last can leave the block, and an
-//! inline addition counts how often each run starts. Everything else follows at exit from these counts and the code.
+//! inline addition counts how often each run starts. Everything else follows at exit from these counts and the code. A run
+//! of a shared routine has a counter for each symbol that it is executed for: what is not shared leaves its symbol where
+//! the next shared run finds it. At each mark of a ray, what the counters rose since the last is the old kind's.
 
 mod api;
 mod arguments;
 mod isa;
 mod ledger;
 mod plugin;
+mod rays;
 mod riscv;
 mod symbols;
 mod thumb;

@@ -1,5 +1,6 @@
 //! What QEMU calls.
 
+use std::collections::HashMap;
 use std::ffi::{CStr, c_char, c_int, c_uint, c_void};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, OnceLock, PoisonError};
@@ -8,6 +9,7 @@ use crate::api::{Block, Entry, Id, Info, Qemu, VERSION};
 use crate::arguments::Arguments;
 use crate::isa::Isa;
 use crate::ledger::Ledger;
+use crate::rays::{MARKS, Mark};
 use crate::symbols::Symbols;
 
 /// The version of the API that QEMU compares with its own before it calls anything.
@@ -26,9 +28,12 @@ struct Plugin {
     qemu: Qemu,
     begin: u64,
     end: u64,
+    marks: Vec<(u64, Mark)>,
     out: PathBuf,
     /// Where the last block ends, if it ended with a conditional branch, and else nowhere.
     fall_through: Entry,
+    /// One more than the index of the symbol that was executed last and is not shared; 0 for none.
+    caller: Entry,
     /// Taken by the report.
     state: Mutex<Option<State>>,
 }
@@ -37,6 +42,10 @@ struct State {
     ledger: Ledger,
     /// The numbers behind the ledger's counters.
     entries: Vec<&'static [Entry]>,
+    /// Runs of shared routines: their addresses and instructions.
+    shared: Vec<(u64, Vec<Vec<u8>>)>,
+    /// Their counters by run and caller.
+    callers: HashMap<(usize, u64), usize>,
 }
 
 static PLUGIN: OnceLock<Plugin> = OnceLock::new();
@@ -85,7 +94,7 @@ unsafe fn install(info: &Info, words: Result<Vec<&str>, String>) -> Result<&'sta
     let target = unsafe { CStr::from_ptr(info.target_name) }.to_string_lossy();
     let isa = Isa::of_target(&target).ok_or_else(|| format!("it counts on arm and riscv32, not on {target}"))?;
 
-    let Arguments { begin, end, symbols, out } = Arguments::parse(words?)?;
+    let Arguments { begin, end, symbols, marks, out } = Arguments::parse(words?)?;
     let of = |path: &Path, error: String| format!("{}: {error}", path.display());
     let symbols = match symbols {
         None => Symbols::default(),
@@ -99,9 +108,12 @@ unsafe fn install(info: &Info, words: Result<Vec<&str>, String>) -> Result<&'sta
 
     // SAFETY: the version was checked above.
     let qemu = unsafe { Qemu::find() }.map_err(|error| format!("this QEMU is not as it says: {error}"))?;
-    let fall_through = qemu.entries(1).next().ok_or("no scoreboard")?;
-    let state = Mutex::new(Some(State { ledger: Ledger::new(isa, symbols), entries: Vec::new() }));
-    Ok(PLUGIN.get_or_init(|| Plugin { qemu, begin, end, out, fall_through, state }))
+    let [fall_through, caller] = [(); 2].map(|()| qemu.entries(1).next());
+    let (fall_through, caller) = fall_through.zip(caller).ok_or("no scoreboard")?;
+    let ledger = Ledger::new(isa, symbols, !marks.is_empty());
+    let state = State { ledger, entries: Vec::new(), shared: Vec::new(), callers: HashMap::new() };
+    let state = Mutex::new(Some(state));
+    Ok(PLUGIN.get_or_init(|| Plugin { qemu, begin, end, marks, out, fall_through, caller, state }))
 }
 
 /// Instruments a block.
@@ -129,11 +141,29 @@ unsafe extern "C" fn on_end(_: c_uint, _: *mut c_void) {
     });
 }
 
+/// Before the first instruction of a mark, whose number among all `mark` is.
+unsafe extern "C" fn on_mark(_: c_uint, mark: *mut c_void) {
+    let (Some(plugin), Some(&mark)) = (PLUGIN.get(), MARKS.get(mark.addr())) else { return };
+    plugin.with_state(|state| {
+        let now = state.read(&plugin.qemu);
+        state.ledger.pass(mark, &now);
+    });
+}
+
 /// Before a block that a conditional branch fell through to.
 unsafe extern "C" fn on_fall_through(cpu: c_uint, entry: *mut c_void) {
     let Some(plugin) = PLUGIN.get() else { return };
     // SAFETY: it was registered with a reference to a leaked entry.
     plugin.qemu.increment(unsafe { *entry.cast::<Entry>() }, cpu);
+}
+
+/// Before a run of a shared routine, whose number `run` is.
+unsafe extern "C" fn on_shared(cpu: c_uint, run: *mut c_void) {
+    let Some(plugin) = PLUGIN.get() else { return };
+    plugin.with_state(|state| {
+        let entry = state.called(&plugin.qemu, run.addr(), plugin.qemu.get(plugin.caller));
+        plugin.qemu.increment(entry, cpu);
+    });
 }
 
 /// Writes the report.
@@ -172,6 +202,21 @@ impl State {
         &self.entries[counter / CHUNK][counter % CHUNK]
     }
 
+    /// The number that counts a run of a shared routine for one caller.
+    fn called(&mut self, qemu: &Qemu, run: usize, caller: u64) -> Entry {
+        let counter = match self.callers.get(&(run, caller)) {
+            Some(&counter) => counter,
+            None => {
+                let (address, code) = self.shared[run].clone();
+                let caller_symbol = usize::try_from(caller).ok().and_then(|caller| caller.checked_sub(1));
+                let counter = self.ledger.run(address, code, caller_symbol);
+                self.callers.insert((run, caller), counter);
+                counter
+            }
+        };
+        *self.entry(qemu, counter)
+    }
+
     /// Registers all that is to be done when the block is executed.
     ///
     /// # Safety
@@ -192,21 +237,39 @@ impl State {
             unsafe { qemu.call_if(block, condition, on_fall_through, entry) };
         }
 
-        let edge = |address| address == plugin.begin || address == plugin.end;
+        let mark = |address| plugin.marks.iter().find(|&&(at, _)| at == address).map(|&(_, mark)| mark);
+        let edge = |address| address == plugin.begin || address == plugin.end || mark(address).is_some();
         let runs = instructions.chunk_by(|(_, _, code), (_, next, _)| !isa.may_leave(code) && !edge(*next));
         for run in runs {
             let (first, address, _) = run[0];
-            let counter = self.ledger.run(address, run.iter().map(|(.., code)| code.clone()).collect());
-            let entry = *self.entry(qemu, counter);
+            let code: Vec<_> = run.iter().map(|(.., code)| code.clone()).collect();
+            let is_shared = self.ledger.is_shared(self.ledger.symbol(address));
+            let symbols = run.iter().rev().map(|&(_, address, _)| self.ledger.symbol(address));
+            let last = symbols.into_iter().find(|&symbol| !self.ledger.is_shared(symbol));
+            let entry = if is_shared {
+                self.shared.push((address, code));
+                None
+            } else {
+                let counter = self.ledger.run(address, code, None);
+                Some(*self.entry(qemu, counter))
+            };
             // SAFETY: the instruction is one of the block. The call comes before the addition, so that the one at the
             // beginning of a window is counted and the one at its end is not.
             unsafe {
                 if address == plugin.begin {
-                    qemu.call(first, on_begin);
+                    qemu.call(first, on_begin, std::ptr::null_mut());
                 } else if address == plugin.end {
-                    qemu.call(first, on_end);
+                    qemu.call(first, on_end, std::ptr::null_mut());
+                } else if let Some(mark) = mark(address) {
+                    qemu.call(first, on_mark, std::ptr::without_provenance_mut(mark as usize));
                 }
-                qemu.count(first, entry);
+                match entry {
+                    Some(entry) => qemu.count(first, entry),
+                    None => qemu.call(first, on_shared, std::ptr::without_provenance_mut(self.shared.len() - 1)),
+                }
+                if let Some(last) = last {
+                    qemu.store(first, plugin.caller, last.map_or(0, |symbol| symbol as u64 + 1));
+                }
             }
         }
 

@@ -40,6 +40,11 @@ impl Symbols {
         (address - start < size).then_some(index)
     }
 
+    /// Whether a symbol's instructions are counted for whoever calls it.
+    pub(crate) fn is_shared(&self, index: usize) -> bool {
+        self.names.get(index).is_some_and(|name| name == "caller")
+    }
+
     /// All names, in the file's order.
     pub(crate) fn names(&self) -> &[String] {
         &self.names

@@ -1,0 +1,17 @@
+//! What operations of shading cost on a microbit.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(target_os = "none")]
+mod chip;
+
+#[cfg(target_os = "none")]
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    firmware_rt::costs::run()
+}
+
+#[cfg(not(target_os = "none"))]
+fn main() {
+    eprintln!("this is firmware for a microbit");
+    std::process::exit(2);
+}
