@@ -55,6 +55,6 @@ fn texel<P: Profile>(scene: &Scene<'_, P>, hit: u32, surface: &Surface<SpaceOf<P
     let [a, b, c] = paint.uvs_of(hit)?;
     let blend = |a: i32, b: i32, c: i32| SpaceOf::<P>::blend([a, b, c], surface.u, surface.v);
     // A profile without it needs no look at the header.
-    let bilinear = P::NEEDS.has(Need::Bilinear) && scene.header.needs.has(Need::Bilinear);
+    let bilinear = P::NEEDS.has(Need::Bilinear) && scene.frame.needs.has(Need::Bilinear);
     texture.look_up(paint.texels, [blend(a[0], b[0], c[0]), blend(a[1], b[1], c[1])], bilinear)
 }

@@ -138,7 +138,7 @@ pub fn render_tile<'w, P: Profile>(
     workspace: &'w mut Workspace<'_, P::Kernel>,
     stats: &mut impl Stats,
 ) -> Result<&'w [u8], RenderError<core::convert::Infallible>> {
-    let needed = usize::from(scene.header.depth);
+    let needed = usize::from(scene.frame.depth);
     let (stack, branches) = (&mut *workspace.stack, &mut *workspace.branches);
     if stack.capacity() < needed {
         return Err(RenderError::Stack { capacity: stack.capacity(), needed });
@@ -151,9 +151,9 @@ pub fn render_tile<'w, P: Profile>(
     let transfer = match (P::NEEDS.has(Need::Srgb), P::NEEDS.has(Need::Linear)) {
         (true, false) => Transfer::Srgb,
         (false, true) => Transfer::Linear,
-        _ => scene.header.transfer,
+        _ => scene.frame.transfer,
     };
-    let format = P::NEEDS.format().unwrap_or(scene.header.format);
+    let format = P::NEEDS.format().unwrap_or(scene.frame.format);
     let count = tile.pixels();
     let capacity = workspace.hits.len().min(workspace.pixels.len() / format.bytes());
     let (Some(hits), Some(pixels)) =
@@ -164,7 +164,7 @@ pub fn render_tile<'w, P: Profile>(
     let places = tile.places();
     if P::NEEDS.has(Need::Supersampling) {
         // One sample goes the same way: it is in the middle, and the mean of itself.
-        let samples = scene.header.samples;
+        let samples = scene.frame.samples;
         // All samples of a pixel, then those of the next: as many rays at a time as there is room for hits, which are as
         // close together as those of a tile.
         let mut rays = places
@@ -213,7 +213,7 @@ fn seen<P: Profile>(
     stats.ray(RayKind::Primary);
     match ray {
         Some(ray) => radiance(scene, &ray, hit, stack, branches, stats),
-        None => Colour::constant(&scene.header.background[0]),
+        None => Colour::constant(&scene.frame.background[0]),
     }
 }
 
@@ -228,7 +228,7 @@ pub fn render<P: Profile, S: Sink>(
     sink: &mut S,
     stats: &mut impl Stats,
 ) -> Result<(), RenderError<S::Error>> {
-    for tile in Tile::of(scene.header.size, tile) {
+    for tile in Tile::of(scene.frame.size, tile) {
         let pixels = render_tile(scene, tile, workspace, stats).map_err(|error| match error {
             RenderError::Stack { capacity, needed } => RenderError::Stack { capacity, needed },
             RenderError::Branches { capacity, needed } => RenderError::Branches { capacity, needed },

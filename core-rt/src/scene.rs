@@ -3,9 +3,11 @@
 use crate::blob::{BlobError, Header, check, open};
 use crate::bvh::Bvh;
 use crate::camera::{Camera, Use};
+use crate::colour::{Radiance, Transfer};
+use crate::format::Format;
 use crate::kernel::{Kernel, NONE};
 use crate::paint::Paint;
-use crate::profile::{Need, Profile};
+use crate::profile::{Need, Needs, Profile};
 use crate::record::{Checker, Light, Lustre, Material};
 use crate::samples::MAX_SAMPLES;
 use crate::section::{Integers, Reader};
@@ -54,11 +56,41 @@ impl<K: Kernel> Shading<'_, K> {
     }
 }
 
+/// What drawing reads of a header. The rest of it, which is most, takes no memory while a picture is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Frame {
+    /// What the scene needs.
+    pub needs: Needs,
+    /// Width and height of the picture.
+    pub size: [u16; 2],
+    /// What a ray that hits nothing sees: straight down, and straight up.
+    pub background: [Radiance; 2],
+    /// Light that reaches everything.
+    pub ambient: Radiance,
+    /// How light becomes numbers.
+    pub transfer: Transfer,
+    /// How pixels are stored.
+    pub format: Format,
+    /// Camera rays a pixel.
+    pub samples: u16,
+    /// From how many surfaces a ray may go on.
+    pub max_depth: u8,
+    /// The levels of nodes: the stack that a traversal needs.
+    pub depth: u8,
+}
+
+impl Frame {
+    fn of(header: &Header) -> Self {
+        let &Header { needs, size, background, ambient, transfer, format, samples, max_depth, depth, .. } = header;
+        Self { needs, size, background, ambient, transfer, format, samples, max_depth, depth }
+    }
+}
+
 /// A checked scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene<'a, P: Profile> {
-    /// What its header says.
-    pub header: Header,
+    /// What its header says of the picture.
+    pub frame: Frame,
     /// What the kernel computes with.
     pub settings: <P::Kernel as Kernel>::Settings,
     /// The view.
@@ -96,7 +128,15 @@ impl<'a, P: Profile> Scene<'a, P> {
         if P::NEEDS.paint() {
             shading.paint.check(header.counts.triangles)?;
         }
-        Ok(Self { header, settings, camera, bvh, shading })
+        Ok(Self { frame: Frame::of(&header), settings, camera, bvh, shading })
+    }
+
+    /// All that the header of a blob for this kernel says; what is not the header is not checked.
+    ///
+    /// # Errors
+    /// As [`Scene::new_checked`].
+    pub fn header(bytes: &[u8]) -> Result<Header, BlobError> {
+        open(bytes, P::Kernel::ID).map(|(header, _)| header)
     }
 }
 
@@ -104,7 +144,7 @@ impl<P: Profile> Scene<'_, P> {
     /// The rays that may wait while a pixel is drawn.
     #[must_use]
     pub fn branches(&self) -> usize {
-        if self.header.needs.branches() { usize::from(self.header.max_depth) + 1 } else { 0 }
+        if self.frame.needs.branches() { usize::from(self.frame.max_depth) + 1 } else { 0 }
     }
 
     /// The ray of a camera, the scene's or one that looks [through](Camera::through) other places, that goes through a pixel;
@@ -117,7 +157,7 @@ impl<P: Profile> Scene<'_, P> {
         x: u16,
         y: u16,
     ) -> Option<<P::Kernel as Kernel>::Ray> {
-        if P::NEEDS.has(Need::Orthographic) && self.header.needs.has(Need::Orthographic) {
+        if P::NEEDS.has(Need::Orthographic) && self.frame.needs.has(Need::Orthographic) {
             let (origin, direction) = camera.parallel(x, y);
             P::Kernel::ray(self.settings, origin, direction, NONE)
         } else {

@@ -66,7 +66,7 @@ pub(crate) fn shade<'a, P: Profile>(
         let mut diffuse = ColourOf::<P>::default();
         let mut shining = ColourOf::<P>::default();
         if P::NEEDS.has(Need::Ambient) {
-            diffuse = Colour::constant(&scene.header.ambient);
+            diffuse = Colour::constant(&scene.frame.ambient);
         }
         for light in scene.shading.lights {
             let Some(arriving) = arriving(scene, &surface, smooth, light, hit, stack, stats) else { continue };

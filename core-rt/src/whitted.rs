@@ -56,7 +56,7 @@ pub(crate) fn radiance<P: Profile>(
             [None, None]
         };
         for (next, share, kind) in onward.into_iter().flatten() {
-            if depth < scene.header.max_depth {
+            if depth < scene.frame.max_depth {
                 stats.ray(kind);
                 // There is room for one a level, and the one that is taken up again at once.
                 let _ = branches.push((next, share, depth + 1));
@@ -73,7 +73,7 @@ pub(crate) fn radiance<P: Profile>(
 
 /// What a ray sees that hits nothing.
 fn background<P: Profile>(scene: &Scene<'_, P>, ray: &RayOf<P>) -> ColourOf<P> {
-    let [bottom, top] = &scene.header.background;
+    let [bottom, top] = &scene.frame.background;
     if !P::NEEDS.has(Need::Sky) {
         return Colour::constant(bottom);
     }

@@ -119,8 +119,8 @@ fn rendered<F: Firmware, S: Stats>(
         }
     };
     let capacity = workspace.stack.capacity();
-    if capacity < usize::from(scene.header.depth) {
-        defmt::error!("the tree has {=u8} levels, and this firmware is for {=usize}", scene.header.depth, capacity);
+    if capacity < usize::from(scene.frame.depth) {
+        defmt::error!("the tree has {=u8} levels, and this firmware is for {=usize}", scene.frame.depth, capacity);
         return Status::Storage;
     }
     let room = workspace.branches.capacity();
@@ -155,13 +155,13 @@ fn drawn<F: Firmware, S: Stats>(
     stats: &mut S,
     counts: fn(&S) -> Counts,
 ) -> Result<(), Error> {
-    let [width, height] = scene.header.size;
+    let [width, height] = scene.frame.size;
     let format = match F::DRAW {
-        Draw::Picture => scene.header.format,
+        Draw::Picture => scene.frame.format,
         Draw::Hits(_) => HITS_FORMAT,
     };
     wire.send(Begin::KIND, &[Begin { width, height, format: format.number() }.as_bytes()])?;
-    for tile in Tile::of(scene.header.size, [TILE; 2]) {
+    for tile in Tile::of(scene.frame.size, [TILE; 2]) {
         let pixels = draw::<F>(scene, tile, workspace, stats);
         let head = TileHead { x: tile.x, y: tile.y, width: tile.width, height: tile.height };
         wire.send(TileHead::KIND, &[head.as_bytes(), pixels])?;

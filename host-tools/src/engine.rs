@@ -106,7 +106,7 @@ impl<K: Measure> Engine for Of<K> {
             texels: scene.shading.paint.texels.len() as u64,
             shading: (size_of_val(scene.shading.materials) + size_of_val(scene.shading.lights)) as u64,
         };
-        Ok((scene.header, sizes))
+        Ok((Scene::<Full<K>>::header(blob)?, sizes))
     }
 
     fn render(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<Rendered, BlobError> {
@@ -114,7 +114,8 @@ impl<K: Measure> Engine for Of<K> {
     }
 
     fn tracer<'a>(&self, blob: &'a [u8]) -> Result<Box<dyn Trace + 'a>, BlobError> {
-        let tracer = Tracer::<K>::new(Scene::new_checked(blob)?).ok_or(BlobError::Header)?;
+        let source = Scene::<Full<K>>::header(blob)?.source;
+        let tracer = Tracer::<K>::new(Scene::new_checked(blob)?, &source).ok_or(BlobError::Header)?;
         Ok(Box::new(tracer))
     }
 }

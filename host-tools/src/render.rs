@@ -24,7 +24,7 @@ pub type Progress<'a> = &'a (dyn Fn(u64) + Sync);
 
 /// Renders a scene on the threads of the current rayon pool. The picture depends on neither threads nor tiles.
 pub fn render<P: Profile>(scene: &Scene<'_, P>, tile: [u16; 2], progress: Progress<'_>) -> Rendered {
-    let tiles: Vec<Tile> = Tile::of(scene.header.size, tile).collect();
+    let tiles: Vec<Tile> = Tile::of(scene.frame.size, tile).collect();
     let done: Vec<(Tile, Vec<u8>, Counts)> = tiles
         .par_iter()
         .map(|&tile| {
@@ -33,12 +33,12 @@ pub fn render<P: Profile>(scene: &Scene<'_, P>, tile: [u16; 2], progress: Progre
             (tile, pixels, counts)
         })
         .collect();
-    let [width, height] = scene.header.size;
+    let [width, height] = scene.frame.size;
     let mut picture = Picture::new(width.into(), height.into());
     let mut counts = Counts::default();
     for (tile, pixels, tile_counts) in done {
         counts = counts.plus(tile_counts);
-        for (row, source) in rgb888(scene.header.format, &pixels).chunks_exact(tile.width.into()).enumerate() {
+        for (row, source) in rgb888(scene.frame.format, &pixels).chunks_exact(tile.width.into()).enumerate() {
             let start = (usize::from(tile.y) + row) * usize::from(width) + usize::from(tile.x);
             picture.pixels_mut()[start..start + source.len()].copy_from_slice(source);
         }
@@ -50,7 +50,7 @@ pub fn render<P: Profile>(scene: &Scene<'_, P>, tile: [u16; 2], progress: Progre
 fn one_tile<P: Profile>(scene: &Scene<'_, P>, tile: Tile) -> (Vec<u8>, Counts) {
     let mut stack = heapless::Vec::<(u32, <P::Kernel as Kernel>::Distance), MAX_DEPTH>::new();
     let mut hits = vec![0; tile.pixels()];
-    let mut pixels = vec![0; tile.pixels() * scene.header.format.bytes()];
+    let mut pixels = vec![0; tile.pixels() * scene.frame.format.bytes()];
     let mut counts = Counts::default();
     let mut branches = heapless::Vec::<_, { MAX_BRANCHES + 1 }>::new();
     let mut workspace = Workspace { stack: &mut stack, branches: &mut branches, hits: &mut hits, pixels: &mut pixels };

@@ -55,10 +55,10 @@ pub struct Tracer<'a, K: Kernel> {
 impl<'a, K: Measure> Tracer<'a, K> {
     const DIRECTION_MAX: DVec3 = DVec3::splat(((1u64 << K::DIRECTION_BITS) - 1) as f64);
 
-    /// A checked scene; `None` where its header places its grid nowhere.
+    /// A checked scene, and where its header places its grid; `None` where that is nowhere.
     #[must_use]
-    pub fn new(scene: Scene<'a, Full<K>>) -> Option<Self> {
-        let grid = source_grid(&scene.header.source)?;
+    pub fn new(scene: Scene<'a, Full<K>>, source: &SourceGrid) -> Option<Self> {
+        let grid = source_grid(source)?;
         let whole = scene.bvh.bounds().reduce(|a, b| a.union(&b))?;
         // Primitives keep the margin from the ends of the grid, and the span is the grid less one margin.
         let origins = Bounds { low: whole.high.map(|c| c - K::SPAN), high: whole.low.map(|c| c + K::SPAN) };

@@ -91,7 +91,7 @@ fn draw<K: Kernel>(blob: &Blob, stats: &mut impl Stats) {
     let mut branches = heapless::Vec::<_, { MAX_BRANCHES + 1 }>::new();
     let mut workspace = Workspace { stack: &mut stack, branches: &mut branches, hits: &mut hits, pixels: &mut pixels };
     intray_measured(|| {
-        for tile in Tile::of(scene.header.size, [SIDE; 2]) {
+        for tile in Tile::of(scene.frame.size, [SIDE; 2]) {
             black_box(render_tile(&scene, tile, &mut workspace, stats).expect("the workspace has room"));
         }
     });

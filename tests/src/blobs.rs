@@ -215,7 +215,7 @@ fn prepared_sample<K: Kernel>(smooth: bool, spheres: &str) -> Blob {
 /// # Panics
 /// Where the renderer does; where a ray looks at a node or a primitive twice.
 pub fn corners<K: Kernel>(scene: &Scene<'_, Full<K>>) -> Vec<Rgb888> {
-    let [width, height] = scene.header.size;
+    let [width, height] = scene.frame.size;
     let side = |picture: u16| picture.min(8);
     let first = Tile { x: 0, y: 0, width: side(width), height: side(height) };
     let last = Tile { x: width - first.width, y: height - first.height, ..first };
@@ -229,7 +229,7 @@ pub fn corners<K: Kernel>(scene: &Scene<'_, Full<K>>) -> Vec<Rgb888> {
         let mut counts = Counts::default();
         let pixels =
             render_tile(scene, tile, &mut workspace, &mut counts).expect("the workspace is the largest there is");
-        seen.extend(rgb888(scene.header.format, pixels));
+        seen.extend(rgb888(scene.frame.format, pixels));
         let nodes = scene.bvh.nodes.len() as u64;
         let primitives = (scene.bvh.triangles.len() + scene.bvh.spheres.len()) as u64;
         assert!(counts.box_tests <= 2 * nodes * counts.rays(), "{counts:?} of {nodes} nodes");

@@ -32,6 +32,23 @@ pub fn all() -> Vec<(&'static str, Model)> {
     ]
 }
 
+/// A scene of triangles alone, with Lambert's law alone, before black.
+#[must_use]
+pub fn matt(mut model: Model) -> Model {
+    model.spheres.clear();
+    model.background = DVec3::ZERO.into();
+    for material in &mut model.materials {
+        *material = Material {
+            name: std::mem::take(&mut material.name),
+            colour: material.colour,
+            emission: material.emission,
+            texture: material.texture.take(),
+            ..Material::default()
+        };
+    }
+    model
+}
+
 fn white() -> Material {
     Material { name: "white".into(), colour: DVec3::ONE, ..Material::default() }
 }

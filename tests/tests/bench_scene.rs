@@ -27,7 +27,7 @@ fn counts<K: Kernel>(model: &Model) -> (Counts, u64) {
     let scene = Scene::<Full<K>>::new_checked(prepared.blob.bytes()).expect("a blob just made");
     let mut stack = heapless::Vec::<Waiting<K>, MAX_DEPTH>::new();
     let (mut counts, mut hits) = (Counts::default(), 0);
-    let [width, height] = scene.header.size;
+    let [width, height] = scene.frame.size;
     for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
         let Some(ray) = K::primary(scene.settings, &scene.camera, x, y) else { continue };
         let hit = scene.bvh.closest(&ray, &mut stack, &mut counts);

@@ -172,7 +172,7 @@ fn the_memory_that_a_small_chip_has_is_enough() {
 fn hits_of(blob: &[u8]) -> Picture {
     let blob = host_tools::prepare::Blob::from_bytes(blob);
     let scene = Scene::<Full<Exact14>>::new_checked(blob.bytes()).unwrap();
-    let [width, height] = scene.header.size;
+    let [width, height] = scene.frame.size;
     let tile = Tile { x: 0, y: 0, width, height };
     let mut stack = heapless::Vec::<_, MAX_DEPTH>::new();
     let mut hits = vec![0; tile.pixels()];

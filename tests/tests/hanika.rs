@@ -77,7 +77,7 @@ fn closest<K: Kernel>(scene: &Scene<'_, Full<K>>, ray: &K::Ray) -> u32 {
 
 /// The ray through a pixel, by its number.
 fn primary<K: Kernel>(scene: &Scene<'_, Full<K>>, pixel: u32) -> Option<K::Ray> {
-    let width = u32::from(scene.header.size[0]);
+    let width = u32::from(scene.frame.size[0]);
     K::primary(scene.settings, &scene.camera, (pixel % width) as u16, (pixel / width) as u16)
 }
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::builder::PossibleValuesParser;
-use firmware_rt::board::{self, BOARDS};
+use firmware_rt::board::{self, BOARDS, Region};
 
 use super::emulate::Shown;
 use super::failure::Failure;
@@ -47,7 +47,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let elf = Elf::read(&arguments.elf, board).map_err(failure)?;
     let blob = arguments.blob.as_deref().map(files::read).transpose()?;
     if let Some(blob) = &blob {
-        room(board, elf.blob_place, blob.len() as u64, || "a smaller blob".into()).map_err(failure)?;
+        let place = elf.blob_place.unwrap_or(Region { start: 0, length: 0 });
+        room(board, place, blob.len() as u64, || "a smaller blob".into()).map_err(failure)?;
     }
     Machine::of(board).version().map_err(failure)?;
 

@@ -22,8 +22,8 @@ pub struct Elf {
     pub static_bytes: u64,
     /// Bytes of the blob that is part of it, 0 if none is.
     pub blob_bytes: u64,
-    /// The flash in which a blob has its place.
-    pub blob_place: Region,
+    /// The flash in which a blob has its place; `None` for what is no firmware for blobs.
+    pub blob_place: Option<Region>,
     /// The addresses of the marks between which instructions are counted.
     pub window: Option<[u64; 2]>,
 }
@@ -37,15 +37,8 @@ impl Elf {
         let bytes = files::read(path)?;
         // QEMU has a folder of its own.
         let path = std::path::absolute(path).unwrap_or_else(|_| path.into());
-        let mut found = Self {
-            path,
-            bytes,
-            text_bytes: 0,
-            static_bytes: 0,
-            blob_bytes: 0,
-            blob_place: Region { start: 0, length: 0 },
-            window: None,
-        };
+        let mut found =
+            Self { path, bytes, text_bytes: 0, static_bytes: 0, blob_bytes: 0, blob_place: None, window: None };
         let file =
             ElfFile32::<Endianness>::parse(found.bytes.as_slice()).map_err(|error| found.unfit(error.to_string()))?;
         let (mut text_bytes, mut static_bytes, mut blob_bytes) = (0, 0, 0);
@@ -66,8 +59,7 @@ impl Elf {
         }
         let blob_address = address(&file, "_intray_blob").and_then(|address| address.try_into().ok());
         let start = blob_address.filter(|&start| start <= board.flash.end());
-        let start = start.ok_or_else(|| found.unfit("it has no place for a blob".into()))?;
-        found.blob_place = Region { start, length: board.flash.end() - start };
+        found.blob_place = start.map(|start| Region { start, length: board.flash.end() - start });
         let window = address(&file, "intray_window_begin").zip(address(&file, "intray_window_end"));
         found.window = window.map(|(begin, end)| [begin, end]);
         (found.text_bytes, found.static_bytes, found.blob_bytes) = (text_bytes, static_bytes, blob_bytes);

@@ -61,7 +61,8 @@ impl Machine {
         command.args(["-nographic", "-monitor", "none", "-serial", "none"]);
         // Without semihosting both machines would wait for ever at the first word to the host.
         command.args(["-semihosting-config", "enable=on,target=native", "-kernel"]).arg(elf.path());
-        for (piece, address) in pieces.iter().zip((elf.blob_place.start..).step_by(PIECE)) {
+        let start = elf.blob_place.map_or(0, |place| place.start);
+        for (piece, address) in pieces.iter().zip((start..).step_by(PIECE)) {
             let mut device = OsString::from("loader,file=");
             device.push(doubled(piece));
             device.push(format!(",addr={address:#x},force-raw=on"));

@@ -93,7 +93,7 @@ fn each_hit<K: Kernel, T: Send>(
     scene: &Scene<'_, Full<K>>,
     of: impl Fn(&K::Ray, u32) -> T + Send + Sync,
 ) -> impl ParallelIterator<Item = Option<T>> {
-    let [width, height] = scene.header.size.map(u32::from);
+    let [width, height] = scene.frame.size.map(u32::from);
     (0..width * height).into_par_iter().map(move |pixel| {
         let (x, y) = ((pixel % width) as u16, (pixel / width) as u16);
         let ray = K::primary(scene.settings, &scene.camera, x, y)?;
@@ -137,7 +137,7 @@ fn faces(&[a, b, c]: &Vertices, point: Triple<i32>) -> bool {
 
 fn self_hits<K: Kernel>(blob: &Blob) -> SelfHits {
     let scene = view::<K>(blob);
-    let eye = scene.header.camera.eye;
+    let eye = Scene::<Full<K>>::header(blob.bytes()).expect("it was read").camera.eye;
     let of = |ray: &K::Ray, hit: u32| {
         let triangle = &scene.bvh.triangles[hit as usize];
         let vertices = K::vertices(triangle);
@@ -170,7 +170,7 @@ fn drawer<K: Kernel>(blob: &Blob) -> Drawer<'_> {
         let mut branches = heapless::Vec::<_, { MAX_BRANCHES + 1 }>::new();
         let mut workspace =
             Workspace { stack: &mut stack, branches: &mut branches, hits: &mut hits, pixels: &mut pixels };
-        let tiles: Vec<Tile> = Tile::of(scene.header.size, [SIDE; 2]).collect();
+        let tiles: Vec<Tile> = Tile::of(scene.frame.size, [SIDE; 2]).collect();
         // Odd, so that they are not all in one column.
         for tile in tiles.iter().step_by((tiles.len() / TIMED_TILES) | 1) {
             let drawn = render_tile(&scene, *tile, &mut workspace, &mut NoStats);

@@ -16,12 +16,13 @@ use host_tools::model::{Filter, Format, Light, LightKind, Lobe, Model, Projectio
 use host_tools::prepare::{Options, Prepared};
 use painted::is_painted;
 use reader::{Blob, crc32, read};
+use tests::scenes;
 
 const KERNELS: [&str; 2] = ["exact14", "exact29"];
 
 /// The built-in scene: lit by a point, partly smooth, with a lamp.
 fn built_in() -> Model {
-    load_from(&Embedded(host_tools::builtin::FILES), "scene.toml").unwrap().model
+    scenes::matt(load_from(&Embedded(host_tools::builtin::FILES), "scene.toml").unwrap().model)
 }
 
 /// The same, flat, in linear light, under a sun.
@@ -143,9 +144,7 @@ fn looks_are_read_by_the_document() {
                 change(&mut other);
                 agree(&other, &model).unwrap_err()
             };
-            let lustre =
-                usize::from(found.triangles.iter().map(|t| found.materials[t.material as usize].lustre).max().unwrap())
-                    - 1;
+            let lustre = usize::from(found.materials.iter().map(|m| m.lustre).max().unwrap()) - 1;
             assert_eq!(fault(&|b| b.lustres[lustre].eta[1] += 2), "index of refraction");
             assert_eq!(fault(&|b| b.lustres[lustre].flags ^= 1), "flags");
             assert_eq!(fault(&|b| b.lustres[lustre].colours[2][1] ^= 2), "mirror image of all light");

@@ -54,7 +54,8 @@ impl Running {
         let mut command = Command::new(program);
         command.args(machine).args(["-nographic", "-monitor", "none", "-serial", "none", "-S", "-gdb"]);
         command.arg(format!("unix:{},server=on,wait=off", socket.display())).arg("-kernel").arg(elf.path());
-        for (address, piece) in (elf.blob_place.start..).step_by(PIECE).zip(blob.chunks(PIECE)) {
+        let start = elf.blob_place.expect("a place for the blob").start;
+        for (address, piece) in (start..).step_by(PIECE).zip(blob.chunks(PIECE)) {
             let file = folder.join(format!("{address:x}"));
             std::fs::write(&file, piece).unwrap();
             command.arg("-device").arg(format!("loader,file={},addr={address:#x},force-raw=on", file.display()));
