@@ -102,7 +102,7 @@ fn every_instruction_is_in_one_cell() {
 #[test]
 fn without_lights_there_are_no_shadows() {
     for (board, counter) in counted() {
-        let mut model = demo();
+        let mut model = scenes::matt(demo());
         model.lights.clear();
         let (breakdown, ..) = broken_down(board, &counter, &model, "exact14");
         let sums: Vec<u64> = breakdown.kinds.iter().map(|row| row.instructions).collect();

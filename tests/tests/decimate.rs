@@ -12,7 +12,6 @@ use host_tools::model::{Model, Triangle};
 use host_tools::picture::Picture;
 use host_tools::prepare::Options;
 use tests::oracle;
-use tests::scenes;
 use tests::{meshes, scenes, shared};
 
 /// A flat model of a mesh, each triangle with vertices of its own.

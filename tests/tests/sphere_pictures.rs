@@ -101,6 +101,6 @@ fn in_a_hollow_mirror() {
     agrees(
         "hollow",
         of(HOLLOW),
-        [("exact14", [0.9, 4.8]), ("exact", [0.05; 2]), ("hanika", [0.03; 2]), ("f", [0.05; 2])],
+        [("exact14", [1.0, 4.8]), ("exact", [0.05; 2]), ("hanika", [0.03; 2]), ("f", [0.05; 2])],
     );
 }
