@@ -22,7 +22,7 @@ use core::cmp::Ordering;
 use super::boxes::BoxNode14;
 use super::width::{Reciprocal, Width};
 use crate::kernel::Surface;
-use crate::num::{Triple, reciprocal, round_shift};
+use crate::num::{Triple, isqrt_u64, reciprocal, round_shift};
 use crate::space::grid14::{POINT_BITS, normalise};
 use crate::space::{Grid14, Space};
 
@@ -111,7 +111,8 @@ impl Width for Width14 {
         if discriminant < 0 {
             return None;
         }
-        let root = discriminant.cast_unsigned().isqrt().cast_signed();
+        // At most b^2, which is below 2^60.
+        let root = isqrt_u64(discriminant.cast_unsigned()).cast_signed();
         Some((root, root * root == discriminant))
     }
 

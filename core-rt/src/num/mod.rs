@@ -10,7 +10,7 @@ mod rsqrt;
 
 pub use power::power;
 pub use recip::{RECIPROCAL_ERROR_BITS, Reciprocal16, reciprocal};
-pub use rsqrt::{inverse_sqrt_u32, inverse_sqrt_u64, sqrt_u32, sqrt_u64};
+pub use rsqrt::{inverse_sqrt_u32, inverse_sqrt_u64, isqrt_u64, sqrt_u32, sqrt_u64};
 
 use core::fmt::Debug;
 use core::ops::{Add, Mul, Neg, Shl, Shr, Sub};

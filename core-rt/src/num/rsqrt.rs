@@ -4,6 +4,8 @@
 //! Normalising a vector is one of these and three products; with a square root and three divisions it is
 //! slower on a Cortex-M0 than soft float.
 
+use super::reciprocal;
+
 /// The table is indexed by the 7 leading bits of x in [2^30, 2^32): 32 to 127.
 const TABLE: [u16; 96] = {
     let mut table = [0; 96];
@@ -82,9 +84,41 @@ pub fn sqrt_u64(x: u64) -> u64 {
     (((normal >> 32) * inverse_sqrt_u64(normal)) >> 31) >> half_shift
 }
 
+/// `floor(sqrt(x))`, exactly, for x below 2^63, without a division.
+///
+/// The approximate root is within 2^-27, so the remainder is below 2^39, and its share of twice the root, by a reciprocal of
+/// 16 bits, within a unit: one step up or down is left.
+#[inline]
+pub fn isqrt_u64(x: u64) -> u64 {
+    let root = sqrt_u64(x);
+    let r = reciprocal((root >> 1) as u32);
+    let remainder = x.cast_signed() - (root * root).cast_signed();
+    let root = (root.cast_signed() + ((remainder * i64::from(r.mantissa)) >> (18 + r.log2_d))).cast_unsigned();
+    if root * root > x {
+        root - 1
+    } else if (root + 1) * (root + 1) <= x {
+        root + 1
+    } else {
+        root
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn whole_roots_are_exact() {
+        let roots =
+            (0..100_000u64).chain((0..2_000_000).map(|i| i * 1518 + i % 7)).chain((1..32).map(|i| (1 << i) - 1));
+        for root in roots.chain([3_037_000_498, 3_037_000_499]) {
+            let square = root * root;
+            for x in [square, square + root, square + 2 * root].into_iter().filter(|&x| x < 1 << 63) {
+                assert_eq!(isqrt_u64(x), root, "{x}");
+            }
+        }
+        assert_eq!(isqrt_u64((1 << 63) - 1), 3_037_000_499);
+    }
 
     #[test]
     fn roots_are_within_the_stated_error() {

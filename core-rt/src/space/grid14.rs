@@ -128,7 +128,8 @@ impl Space for Grid14 {
                 }
             }
         }
-        [0, 1, 2].map(|axis| lifted[axis].clamp(low[axis], high[axis]))
+        // Not `clamp`, which would panic if the range had no inside.
+        [0, 1, 2].map(|axis| lifted[axis].max(low[axis]).min(high[axis]))
     }
 
     #[inline]

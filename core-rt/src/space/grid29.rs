@@ -153,7 +153,8 @@ impl<F: Fraction> Space for Grid29With<F> {
                 }
             }
         }
-        [0, 1, 2].map(|axis| lifted[axis].clamp(low[axis], high[axis]))
+        // Not `clamp`, which would panic if the range had no inside.
+        [0, 1, 2].map(|axis| lifted[axis].max(low[axis]).min(high[axis]))
     }
 
     #[inline]
