@@ -3,6 +3,7 @@
 
 mod optics;
 mod paint;
+mod shading;
 mod spheres;
 
 use core_rt::camera::{Camera, CameraHeader, Use};
@@ -128,20 +129,26 @@ fn errors() -> String {
     rows.iter().fold(head, |text, (operation, cells)| text + &format!("| {operation} | {} |\n", cells.join(" | ")))
 }
 
-/// `docs/SHADING.md` has the table's bounds; `INTRAY_BLESS=1` renews it.
-#[test]
-fn the_document_has_these_bounds() {
+/// Checks that a generated part of `docs/SHADING.md` is this; `INTRAY_BLESS=1` renews it.
+fn in_the_document(part: &str, meant: &str) {
+    /// It is written by one test at a time.
+    static DOCUMENT: std::sync::Mutex<()> = std::sync::Mutex::new(());
+    let _turn = DOCUMENT.lock();
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/SHADING.md");
     let text = std::fs::read_to_string(&path).expect("the document");
-    let (begin, end) = ("<!-- generated: errors -->\n", "<!-- end of generated -->\n");
-    let (before, rest) = text.split_once(begin).expect("a generated part");
+    let (begin, end) = (format!("<!-- generated: {part} -->\n"), "<!-- end of generated -->\n");
+    let (before, rest) = text.split_once(&begin).expect("a generated part");
     let (found, after) = rest.split_once(end).expect("its end");
-    let errors = errors();
     if std::env::var_os("INTRAY_BLESS").is_some() {
-        std::fs::write(&path, format!("{before}{begin}{errors}{end}{after}")).expect("the document");
+        std::fs::write(&path, format!("{before}{begin}{meant}{end}{after}")).expect("the document");
     } else {
-        assert_eq!(found, errors, "INTRAY_BLESS=1 renews it");
+        assert_eq!(found, meant, "INTRAY_BLESS=1 renews it");
     }
+}
+
+#[test]
+fn the_document_has_these_bounds() {
+    in_the_document("errors", &errors());
 }
 
 /// A vector with components of any magnitude up to `2^bits`, often at the ends.
