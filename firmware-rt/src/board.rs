@@ -71,7 +71,7 @@ pub const MICROBIT: Board = Board {
     target: "thumbv6m-none-eabi",
     package: "firmware-cortexm",
     flash: Region { start: 0, length: 256 * KIB },
-    code_lengths: [64 * KIB, 96 * KIB],
+    code_lengths: [80 * KIB, 96 * KIB],
     stack: Region { start: 0x2000_0000, length: 8 * KIB },
     ram: Region { start: 0x2000_2000, length: 8 * KIB },
 };

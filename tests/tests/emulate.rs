@@ -217,11 +217,11 @@ fn a_foreign_blob_and_one_with_other_needs_are_refused_by_the_chip() {
 
 #[test]
 fn what_does_not_fit_is_said_before_anything_is_built() {
-    assert!(room(&MICROBIT, MICROBIT.blob(14), 196_608, || unreachable!()).is_ok());
+    assert!(room(&MICROBIT, MICROBIT.blob(14), 180_224, || unreachable!()).is_ok());
     let error = room(&MICROBIT, MICROBIT.blob(14), 200_000, || "fewer triangles".into()).unwrap_err().to_string();
     assert_eq!(
         error,
-        "the blob has 200000 bytes, and microbit has 196608 for it in its flash: 3392 too many. What would help: fewer \
+        "the blob has 200000 bytes, and microbit has 180224 for it in its flash: 19776 too many. What would help: fewer \
          triangles"
     );
     assert!(room(&HIFIVE1, HIFIVE1.blob(29), 200_000, || unreachable!()).is_ok());
