@@ -60,6 +60,19 @@ fn fitted(model: Model) -> Model {
 /// What firmware for one scene alone has.
 const OWN_KERNELS: [&str; 1] = ["exact14"];
 
+/// What has looks that the built-in scene lacks: checkers, lights that fade, Phong's law, weights, mirrors in mirrors.
+fn gallery() -> Vec<(&'static str, Model)> {
+    let folders = [
+        ("raystones", "scenes/raystones"),
+        ("gallery-spheres", "scenes/gallery/spheres"),
+        ("gallery-mirrors", "scenes/gallery/mirrors"),
+        ("gallery-glass", "scenes/gallery/glass"),
+        ("gallery-materials", "scenes/gallery/materials"),
+    ];
+    let load = |folder: &str| import::load(&root(folder).join("scene.toml")).expect("a scene of the gallery").model;
+    folders.map(|(name, folder)| (name, load(folder))).into()
+}
+
 /// All scenes; no model where it is absent.
 fn all() -> Vec<(&'static str, Option<Model>)> {
     let bench = import::load(&root("scenes/bench-1k/scene.toml")).expect("the performance scene").model;
@@ -67,7 +80,7 @@ fn all() -> Vec<(&'static str, Option<Model>)> {
         SHARED.map(|(name, path)| (name, shared::scene(path).map(|path| import::load(&path).expect("a model").model)));
     let textures = import::load(&root("scenes/gallery/textures/scene.toml")).expect("a scene of the gallery").model;
     // Another transfer is another firmware.
-    let own = scenes::all().into_iter().chain(scenes::pixels()).filter(|&(name, _)| name != "linear");
+    let own = scenes::all().into_iter().chain(scenes::pixels()).chain(gallery()).filter(|&(name, _)| name != "linear");
     let own = own.map(|(name, model)| (name, Some(model)));
     let mut all: Vec<_> = own.chain([("bench-1k", Some(bench)), ("textures", Some(textures))]).chain(real).collect();
     for (_, model) in &mut all {
@@ -159,7 +172,8 @@ fn pictures_are_the_same_on_three_machines() {
             .collect()
     };
     let shared = firmware(&everything, &KERNELS);
-    let own: Vec<_> = scenes::pixels().iter().map(|(name, model)| (*name, firmware(model, &OWN_KERNELS))).collect();
+    let alone = scenes::pixels().into_iter().chain(gallery());
+    let own: Vec<_> = alone.map(|(name, model)| (name, firmware(&model, &OWN_KERNELS))).collect();
     let built = begin.elapsed();
 
     let mut found = Vec::new();
