@@ -62,11 +62,15 @@ fn the_refinement_is_never_worse_and_the_conservative_box_neither() {
     }
 }
 
-/// The nearest hit over all triangles, by the kernel's own triangle test and in its own order.
+/// The nearest hit over all triangles and spheres, by the kernel's own tests and in its own order.
 fn brute<K: Kernel>(scene: &Scene<'_, Full<K>>, ray: &K::Ray) -> u32 {
-    let hits = (0..).zip(scene.bvh.triangles).filter(|(index, _)| *index != K::skip(ray));
-    let hits = hits.filter_map(|(index, triangle)| Some((index, K::intersect(ray, triangle)?)));
-    let nearest = hits.min_by(|(i, a), (j, b)| K::order(a, b).then(scene.bvh.ids.get(*i).cmp(&scene.bvh.ids.get(*j))));
+    let (bvh, skip) = (&scene.bvh, K::skip(ray));
+    let triangles = (0..).zip(bvh.triangles).filter(|(index, _)| *index != skip);
+    let triangles = triangles.map(|(index, triangle)| (index, K::intersect(ray, triangle)));
+    let spheres = (bvh.triangles.len() as u32..).zip(bvh.spheres);
+    let spheres = spheres.map(|(index, sphere)| (index, K::intersect_sphere(ray, sphere, index == skip)));
+    let hits = triangles.chain(spheres).filter_map(|(index, depth)| Some((index, depth?)));
+    let nearest = hits.min_by(|(i, a), (j, b)| K::order(a, b).then(bvh.ids.get(*i).cmp(&bvh.ids.get(*j))));
     nearest.map_or(NONE, |(index, _)| index)
 }
 
@@ -81,7 +85,7 @@ fn primary<K: Kernel>(scene: &Scene<'_, Full<K>>, pixel: u32) -> Option<K::Ray> 
     K::primary(scene.settings, &scene.camera, (pixel % width) as u16, (pixel / width) as u16)
 }
 
-/// Of every `step`th pixel, how many see something else through the tree than over all triangles.
+/// Of every `step`th pixel, how many see something else through the tree than over all primitives.
 fn lost<V: Variant>(model: &Model, leaf_max: u32, step: usize) -> usize {
     let tree = TreeOptions { leaf_max, leaf_always: true, ..TreeOptions::default() };
     let blob = prepare::<Hanika<V>>(model, &Options { tree, ..Options::default() }).expect("it fits").blob;
