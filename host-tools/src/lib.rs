@@ -17,6 +17,7 @@ pub mod plane;
 pub mod prepare;
 pub mod reference;
 pub mod render;
+pub mod report;
 pub mod textures;
 pub mod trace;
 pub mod tree;

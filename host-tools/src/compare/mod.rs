@@ -9,11 +9,11 @@ mod ssim;
 
 use crate::picture::Picture;
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// The distance between two pictures. Byte errors are in units of the encoded 8-bit values.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
     /// The largest difference of a channel, 0 to 255.
     pub max_abs: u8,
