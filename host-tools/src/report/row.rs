@@ -11,7 +11,7 @@ use crate::compare::Comparison;
 pub const SCHEMA: &str = "intray-report/1";
 
 /// Where a picture is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Machine {
     /// This computer, one thread; its cost is a time, as a ratio to f32's in the same run.
@@ -23,7 +23,7 @@ pub enum Machine {
 }
 
 /// What is varied: points of one study and scene make one series of a plot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum Study {
     /// Every kernel as it comes.
