@@ -329,7 +329,7 @@ fn warn_of_degenerates(degenerates: Degenerates, triangles: usize) {
 }
 
 /// `WxH`.
-fn size(text: &str) -> Result<[u32; 2], String> {
+pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
     let sides = text.split_once(['x', 'X']).and_then(|(w, h)| Some([w.trim().parse().ok()?, h.trim().parse().ok()?]));
     let Some::<[i64; 2]>(sides) = sides else {
         return Err("expected WIDTHxHEIGHT in pixels, such as 640x480".into());

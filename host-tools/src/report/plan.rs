@@ -3,7 +3,11 @@
 //! The study of kernels has every kernel on every machine. The others vary one number each, of few kernels, at the smallest
 //! of the sizes, so that all machines draw the same pictures: a point differs from the kernel's own in one thing alone.
 
-use super::row::{Machine, Point, Study};
+use std::fmt::{self, Display, Formatter};
+
+use clap::ValueEnum;
+
+use super::row::{Machine, Point, Study, name};
 use crate::engine::ENGINES;
 
 /// What is asked for. An empty list asks for all that there are.
@@ -19,6 +23,25 @@ pub struct Selection {
     pub studies: Vec<Study>,
     /// Sizes of pictures, instead of those that follow from the scene.
     pub sizes: Vec<[u32; 2]>,
+}
+
+/// Whether something is among what is asked for; everything is where nothing is.
+pub(super) fn asked<T: PartialEq>(list: &[T], value: &T) -> bool {
+    list.is_empty() || list.contains(value)
+}
+
+/// As on the command line.
+impl Display for Selection {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Self { quick, kernels, machines, studies, sizes } = self;
+        let mut words = Vec::new();
+        words.extend(quick.then(|| "--quick".to_owned()));
+        words.extend(kernels.iter().map(|kernel| format!("--kernel {kernel}")));
+        words.extend(machines.iter().map(|machine| format!("--machine {}", name(machine))));
+        words.extend(studies.iter().map(|study| format!("--study {}", name(study))));
+        words.extend(sizes.iter().map(|[width, height]| format!("--size {width}x{height}")));
+        f.write_str(&words.join(" "))
+    }
 }
 
 /// What a plan needs to know of a scene.
@@ -53,12 +76,12 @@ const STUDIED: [&str; 3] = ["exact14", "exact29", "f32"];
 /// beside them.
 #[must_use]
 pub fn points(scene: &Traits, selection: &Selection) -> Vec<Point> {
-    let mut all: Vec<Point> = Machine::ALL.into_iter().flat_map(|machine| of_machine(scene, selection, machine)).collect();
+    let mut all: Vec<Point> =
+        Machine::value_variants().iter().flat_map(|&machine| of_machine(scene, selection, machine)).collect();
     all.retain(|point| {
-        let named = |list: &[String]| list.is_empty() || list.contains(&point.kernel);
-        named(&selection.kernels)
-            && (selection.machines.is_empty() || selection.machines.contains(&point.machine))
-            && (selection.studies.is_empty() || selection.studies.contains(&point.study))
+        asked(&selection.kernels, &point.kernel)
+            && asked(&selection.machines, &point.machine)
+            && asked(&selection.studies, &point.study)
     });
     all
 }

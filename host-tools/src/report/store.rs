@@ -87,7 +87,8 @@ impl Store {
                 let there = Self::whose(&path, &bytes)?;
                 lock(&path)?;
                 if !fresh {
-                    let there = there.fitting(&header).map_err(|what| StoreError::Stale { path: path.clone(), what })?;
+                    let there =
+                        there.fitting(&header).map_err(|what| StoreError::Stale { path: path.clone(), what })?;
                     rows = Self::rows(&path, &bytes)?;
                     // Those that are away today, such as one that cannot be read, keep their rows.
                     header.scenes = there.scenes.into_iter().chain(header.scenes).collect();
@@ -167,7 +168,8 @@ impl There {
         }
         let mut fields = self.rest;
         fields["schema"] = self.schema.into();
-        let there: Header = serde_json::from_value(fields).map_err(|error| format!("its header is damaged: {error}"))?;
+        let there: Header =
+            serde_json::from_value(fields).map_err(|error| format!("its header is damaged: {error}"))?;
         for (what, old, new) in [
             ("by another program", &there.program, &wanted.program),
             ("on another computer", &there.machine, &wanted.machine),
@@ -177,7 +179,8 @@ impl There {
                 return Err(format!("its rows were measured {what} ({old}; now {new})"));
             }
         }
-        let changed = wanted.scenes.iter().find(|(name, digest)| there.scenes.get(*name).is_some_and(|old| old != *digest));
+        let changed =
+            wanted.scenes.iter().find(|(name, digest)| there.scenes.get(*name).is_some_and(|old| old != *digest));
         match changed {
             Some((name, _)) => Err(format!("the scene {name} has changed since its rows were measured")),
             None => Ok(there),
