@@ -1,5 +1,6 @@
 //! Error against run time: scenes by kernels and their knobs, on the host and on chips.
 
+pub mod page;
 pub mod row;
 
 use std::collections::BTreeMap;
