@@ -21,3 +21,4 @@ pub mod report;
 pub mod textures;
 pub mod trace;
 pub mod tree;
+pub mod witness;

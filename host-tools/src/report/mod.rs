@@ -1,7 +1,20 @@
 //! Error against run time: scenes by kernels and their knobs, on the host and on chips.
 
+pub mod causes;
+mod chip;
+pub mod csv;
+pub mod facts;
+mod measure;
 pub mod page;
+pub mod plan;
 pub mod row;
+pub mod scene;
+pub mod store;
+pub mod sweep;
+mod trouble;
+mod truth;
+
+pub use trouble::SweepError;
 
 use std::collections::BTreeMap;
 
