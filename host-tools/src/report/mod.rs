@@ -5,6 +5,7 @@ mod chip;
 pub mod csv;
 pub mod facts;
 mod measure;
+pub mod page;
 pub mod plan;
 pub mod row;
 pub mod scene;
