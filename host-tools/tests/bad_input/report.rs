@@ -43,7 +43,10 @@ fn no_scene_that_can_be_read() {
     let output = folder.run(&format!("report none.obj scene.blob {SMALL} -o out"));
     assert_eq!(output.status.code(), Some(2));
     let stderr = text(&output.stderr);
-    assert!(stderr.starts_with("error: none.obj: no such file\n") && stderr.contains("scene.blob: "), "{message} {stderr}");
+    assert!(
+        stderr.starts_with("error: none.obj: no such file\n") && stderr.contains("scene.blob: "),
+        "{message} {stderr}"
+    );
     assert!(!folder.path("out").exists());
 }
 
@@ -126,10 +129,13 @@ fn rows_of_another_report() {
 #[test]
 fn without_an_emulator() {
     let folder = Folder::with_triangle();
-    let mut command = folder.intray(&["report", "scene.obj", "--quick", "--study", "kernels", "--kernel", "f32", "-o", "out"]);
+    let mut command =
+        folder.intray(&["report", "scene.obj", "--quick", "--study", "kernels", "--kernel", "f32", "-o", "out"]);
     let output = command.env("PATH", "").output().unwrap();
     let stderr = text(&output.stderr);
-    for note in ["There are no rows of hifive1 (FE310, rv32imac): ", "There are no rows of microbit (nRF51822, Cortex-M0): "] {
+    for note in
+        ["There are no rows of hifive1 (FE310, rv32imac): ", "There are no rows of microbit (nRF51822, Cortex-M0): "]
+    {
         assert!(stderr.contains(note), "{stderr}");
         assert!(text(&folder.read("out/report.json")).contains(note));
     }
