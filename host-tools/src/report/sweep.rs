@@ -11,6 +11,7 @@ use clap::ValueEnum;
 
 use super::chip::Chips;
 use super::measure::{Bench, PICTURES, pictures};
+use super::page::page;
 use super::plan::{self, Selection, Traits, asked};
 use super::row::{Machine, Measured, Outcome, Point, Row, SCHEMA, Study};
 use super::scene::Scene;
@@ -174,11 +175,12 @@ impl Sweep<'_> {
 
     /// Writes all files that are made from rows.
     fn write(&self, report: &Report) -> Result<(), SweepError> {
-        let [json, csv, _] = FILES.map(|name| self.folder.join(name));
+        let [json, csv, html] = FILES.map(|name| self.folder.join(name));
         // Maps have text for keys, and nothing else in a report can fail.
         let text = serde_json::to_string(report).unwrap_or_default() + "\n";
         files::write_atomically(&json, text.as_bytes())?;
         files::write_atomically(&csv, csv::table(&report.rows).as_bytes())?;
+        files::write_atomically(&html, page(report, self.folder)?.as_bytes())?;
         Ok(())
     }
 }

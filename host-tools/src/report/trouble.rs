@@ -4,6 +4,7 @@ use core_rt::blob::BlobError;
 use firmware_rt::status::Status;
 use thiserror::Error;
 
+use super::page::PageError;
 use super::store::StoreError;
 use crate::compare::SizeMismatch;
 use crate::emulate::EmulateError;
@@ -30,8 +31,8 @@ pub enum SweepError {
     #[error(transparent)]
     Threads(#[from] rayon::ThreadPoolBuildError),
     /// The page could not be drawn.
-    #[error("{0}")]
-    Page(String),
+    #[error(transparent)]
+    Page(#[from] PageError),
 }
 
 /// Why a point has no figures.
