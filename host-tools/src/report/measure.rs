@@ -205,6 +205,7 @@ fn options(point: &Point) -> Options {
     Options {
         tree: point.leaf.map_or(tree, |leaf_max| TreeOptions { leaf_max, leaf_always: true, ..tree }),
         knobs: Knobs { c_bits, d_bits, edge_shift, epsilon: None },
+        grid_bits: point.grid_bits,
         ..Options::default()
     }
 }
