@@ -153,7 +153,8 @@ fn figures_are_those_of_the_pictures() {
         assert_eq!((picture.width(), picture.height()), (24, 18));
         assert_eq!(*error, compare(&picture, &truth).unwrap(), "{}", row.point);
         assert_eq!(*image_crc32, format!("{:08x}", picture.crc32()));
-        let all = [causes.holes, causes.visibility, causes.secondary, causes.shadow, causes.shading, causes.quantisation];
+        let all =
+            [causes.holes, causes.visibility, causes.secondary, causes.shadow, causes.shading, causes.quantisation];
         let differ = picture.pixels().iter().zip(truth.pixels()).filter(|(a, b)| a != b).count() as u64;
         assert_eq!(all.iter().map(|cause| cause.pixels).sum::<u64>(), differ, "{}", row.point);
         assert_eq!(all.iter().map(|cause| cause.over_4).sum::<u64>(), error.over_4);
@@ -221,7 +222,11 @@ fn rows_that_do_not_fit_are_refused_and_fresh_begins_anew() {
     };
     let anew = "`--fresh` begins anew, or name another folder";
     for (from, to, what) in [
-        ("intray-report/1", "intray-report/0", "its rows are of the schema intray-report/0, and this program writes intray-report/1"),
+        (
+            "intray-report/1",
+            "intray-report/0",
+            "its rows are of the schema intray-report/0, and this program writes intray-report/1",
+        ),
         ("\"program\":\"intray ", "\"program\":\"intray 0.0.9 ", "its rows were measured by another program"),
         ("\"machine\":\"", "\"machine\":\"Z80 ", "its rows were measured on another computer"),
         ("--study kernels", "--study depth", "its rows were measured with other options"),
@@ -265,11 +270,17 @@ fn a_point_that_fails_is_a_row_and_loses_no_other() {
     let place = Place::new();
     // Nothing of it is left on the grid of exact14.
     place.write("a/mesh.obj", "v 0 0 0\nv 0.001 0 0\nv 0 0.001 0\nf 1 2 3\n");
-    place.write("a/scene.toml", &TOML.replace("[1, 1, 6]", "[100, 0, 600]").replace("[material.mirror]\nkind = 'mirror'\n", ""));
+    place.write(
+        "a/scene.toml",
+        &TOML.replace("[1, 1, 6]", "[100, 0, 600]").replace("[material.mirror]\nkind = 'mirror'\n", ""),
+    );
     let selection = Selection { kernels: Vec::new(), studies: vec![Study::Kernels], ..on_host("") };
     let swept = place.succeeds(&selection);
     let failed = |report: &Report| {
-        let rows = report.rows.iter().filter(|row| matches!(&row.outcome, Outcome::Failed(why) if why.contains("14-bit grid")));
+        let rows = report
+            .rows
+            .iter()
+            .filter(|row| matches!(&row.outcome, Outcome::Failed(why) if why.contains("14-bit grid")));
         rows.map(|row| row.point.kernel.clone()).collect::<Vec<_>>()
     };
     assert_eq!((swept.report.rows.len(), failed(&swept.report)), (8, vec!["exact14".to_owned()]));
@@ -336,6 +347,9 @@ fn chips_draw_the_same_pictures() {
         let selection = Selection { kernels: vec!["f64".into()], machines: vec![Machine::Thumbv6m], ..selection };
         let (swept, _) = sweep(&scenes, &selection, &place.path("large"), false);
         let rows = swept.unwrap().report.rows;
-        assert!(matches!(&rows[..], [Row { outcome: Outcome::Failed(why), .. }] if why.contains("too many")), "{rows:?}");
+        assert!(
+            matches!(&rows[..], [Row { outcome: Outcome::Failed(why), .. }] if why.contains("too many")),
+            "{rows:?}"
+        );
     }
 }
