@@ -280,7 +280,7 @@ fn a_point_that_fails_is_a_row_and_loses_no_other() {
         let rows = report
             .rows
             .iter()
-            .filter(|row| matches!(&row.outcome, Outcome::Failed(why) if why.contains("14-bit grid")));
+            .filter(|row| matches!(&row.outcome, Outcome::Failed(why) if why.contains("-bit grid of exact14")));
         rows.map(|row| row.point.kernel.clone()).collect::<Vec<_>>()
     };
     assert_eq!((swept.report.rows.len(), failed(&swept.report)), (8, vec!["exact14".to_owned()]));

@@ -182,7 +182,7 @@ fn numbers(scene: &Traits, quick: bool, of: &impl Fn(Study, &str) -> Point, kern
     }
     // The grid as it comes is the series' end.
     let bits: &[u32] = match kernel {
-        "exact14" => &[6, 8, 10, 12],
+        "exact14" => &[8, 10, 12, 13, 14],
         "exact29" => &[8, 11, 14, 17, 20, 23, 26],
         _ => &[],
     };
