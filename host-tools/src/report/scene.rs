@@ -35,7 +35,7 @@ pub struct Content {
 /// Reads scenes; without a path, the built-in one. Names are made of letters, digits, `-`, `_` and `.`, so that they can
 /// be parts of file names, and no two are the same.
 #[must_use]
-pub fn read(paths: &[impl AsRef<Path>]) -> Vec<Scene> {
+pub fn read<P: AsRef<Path>>(paths: &[P]) -> Vec<Scene> {
     let mut scenes: Vec<Scene> = Vec::new();
     if paths.is_empty() {
         scenes.push(scene("demo".into(), "built-in", content(&Embedded(builtin::FILES), "scene.toml")));

@@ -11,8 +11,8 @@ pub(crate) struct Found {
     pub(crate) errors: Vec<String>,
     /// Labels of plots that lie on others or outside.
     pub(crate) crowded: Vec<String>,
-    /// Figures that are shown, and all.
-    pub(crate) shown: usize,
+    /// Figures that are shown and not of the first scene and metric, or the other way round; and all.
+    pub(crate) astray: usize,
     pub(crate) figures: usize,
     /// Tables by their names.
     pub(crate) tables: BTreeMap<String, Table>,

@@ -11,7 +11,11 @@ addEventListener("load", () => {
       })),
     };
   }
-  const shown = all("figure").filter((figure) => figure.checkVisibility()).length;
+  // What is chosen at first is the first of each.
+  const chosen = (figure, kind) => !figure.closest(`.${kind}`) || figure.closest(`.${kind}-0`) !== null;
+  const astray = all("figure").filter(
+    (figure) => figure.checkVisibility() !== (chosen(figure, "scene") && chosen(figure, "metric")),
+  ).length;
   // Positions are of what is shown.
   const style = document.createElement("style");
   style.textContent = ".scene, .metric { display: block !important }";
@@ -36,7 +40,7 @@ addEventListener("load", () => {
   const found = {
     errors: window.probeErrors,
     crowded,
-    shown,
+    astray,
     figures: all("figure").length,
     tables,
     text: document.body.innerText,
