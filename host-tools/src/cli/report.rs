@@ -1,6 +1,6 @@
 //! `intray report`: error against run time.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::builder::PossibleValuesParser;
@@ -10,6 +10,7 @@ use super::failure::{Failure, note, warn};
 use super::input::size;
 use super::{output, progress};
 use crate::engine::ENGINES;
+use crate::report::page;
 use crate::report::plan::Selection;
 use crate::report::row::{Machine, Outcome, Study};
 use crate::report::scene;
@@ -25,8 +26,12 @@ pub(super) struct Arguments {
     scenes: Vec<PathBuf>,
 
     /// The folder that the report goes to
-    #[arg(short, value_name = "DIR")]
-    output: PathBuf,
+    #[arg(short, value_name = "DIR", required_unless_present = "page_only")]
+    output: Option<PathBuf>,
+
+    /// Make the page of the report in this folder anew, and measure nothing
+    #[arg(long, value_name = "DIR", exclusive = true)]
+    page_only: Option<PathBuf>,
 
     /// Few points and small pictures
     #[arg(long)]
@@ -59,7 +64,14 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { output: folder, quick, kernel, machine, study, size, fresh, timeout, .. } = arguments;
+    let Arguments { quick, kernel, machine, study, size, fresh, timeout, .. } = arguments;
+    if let Some(folder) = &arguments.page_only {
+        let page = page::renew(folder)?;
+        return output::line(&format!("{}: made anew", page.display()));
+    }
+    let Some(folder) = &arguments.output else {
+        return Err(Failure::input("there is no folder for the report; name one by -o"));
+    };
     let scenes = scene::read(&arguments.scenes);
     for scene in &scenes {
         scene.content.iter().flat_map(|content| &content.warnings).for_each(warn);
@@ -78,7 +90,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         folder,
         fresh: *fresh,
         limit: Duration::from_secs(*timeout),
-        command: command(arguments, &selection),
+        command: command(arguments, folder, &selection),
     };
     let swept = sweep.run(&Shown(&bar));
     bar.finish_and_clear();
@@ -98,10 +110,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// The command line that makes the report again.
-fn command(arguments: &Arguments, selection: &Selection) -> String {
+fn command(arguments: &Arguments, folder: &Path, selection: &Selection) -> String {
     let scenes = arguments.scenes.iter().map(|path| path.display().to_string());
     let words = ["intray".to_owned(), "report".to_owned()].into_iter().chain(scenes);
-    let words = words.chain(["-o".to_owned(), arguments.output.display().to_string(), selection.to_string()]);
+    let words = words.chain(["-o".to_owned(), folder.display().to_string(), selection.to_string()]);
     words.filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
 }
 

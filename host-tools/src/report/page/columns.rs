@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::report::row::{Cost, Instructions, Machine, Measured, Point, Row, Time};
+use crate::report::row::{Cost, Instructions, Measured, Point, Row, Time, name};
 
 use super::context::{drawn, settings};
 use super::cost::machine_name;
@@ -96,21 +96,21 @@ pub(super) fn columns(rows: &[&Row]) -> (Vec<Column>, String) {
     };
     let mut columns = vec![
         column("scene", "", &|point, _| Cell::Word(point.scene.clone())),
-        column("machine", "", &|point, _| Cell::Word(short_name(point.machine).into())),
+        column("machine", "", &|point, _| Cell::Word(name(&point.machine))),
         column("kernel", "", &|point, _| Cell::Word(point.kernel.clone())),
     ];
     let mut common = Vec::new();
-    for name in ["size", "samples", "depth", "C", "D", "E", "leaf", "grid bits", "triangles"] {
-        let setting = |point: &Point| settings(point).into_iter().find(|set| set.0 == name).map(|set| set.1);
+    for setting_name in ["size", "samples", "depth", "c", "d", "e", "leaf", "grid", "triangles"] {
+        let setting = |point: &Point| settings(point).into_iter().find(|set| set.0 == setting_name).map(|set| set.1);
         let all: BTreeSet<Option<String>> = rows.iter().map(|(point, _)| setting(point)).collect();
         if all.len() > 1 {
-            let hint = if name == "triangles" { "what the mesh is decimated to" } else { "" };
-            columns.push(column(name, hint, &|point, _| {
+            let hint = if setting_name == "triangles" { "what the mesh is decimated to" } else { "" };
+            columns.push(column(setting_name, hint, &|point, _| {
                 let number = |text: &String| text.parse().unwrap_or(pixel_count(point) as f64);
                 setting(point).map_or(Cell::Empty, |text| Cell::Number(text.clone(), number(&text)))
             }));
         } else if let Some(Some(value)) = all.first() {
-            common.push(format!("{name} {value}"));
+            common.push(format!("{setting_name} {value}"));
         }
     }
     columns.extend(ERRORS.iter().map(|given| column(given.0, given.1, &given.2)));
@@ -144,15 +144,6 @@ pub(super) fn columns(rows: &[&Row]) -> (Vec<Column>, String) {
     }
     columns.extend(SCENE.iter().map(|given| column(given.0, given.1, &given.2)));
     (columns, common.join(", "))
-}
-
-/// A machine in a table.
-pub(super) fn short_name(machine: Machine) -> &'static str {
-    match machine {
-        Machine::Host => "host",
-        Machine::Rv32imac => "rv32imac",
-        Machine::Thumbv6m => "thumbv6m",
-    }
 }
 
 /// The table of all kernels over all scenes.

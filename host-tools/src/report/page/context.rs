@@ -92,12 +92,6 @@ pub(super) fn settings(point: &Point) -> Vec<(&'static str, String)> {
         ("samples", point.samples.to_string()),
         ("depth", point.depth.to_string()),
     ];
-    let mut knob = |name, value: Option<String>| set.extend(value.map(|value| (name, value)));
-    for (name, value) in ["C", "D", "E"].into_iter().zip(point.knobs) {
-        knob(name, value.map(|value| value.to_string()));
-    }
-    knob("leaf", point.leaf.map(|leaf| leaf.to_string()));
-    knob("grid bits", point.grid_bits.map(|bits| bits.to_string()));
-    knob("triangles", point.triangles.map(|count| count.to_string()));
+    set.extend(point.set().map(|(name, value)| (name, value.to_string())));
     set
 }

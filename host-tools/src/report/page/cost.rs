@@ -50,7 +50,7 @@ pub(super) fn machine_name(machine: Machine) -> &'static str {
 /// Where something is drawn, in a sentence.
 pub(super) fn machine_phrase(machine: Machine) -> &'static str {
     match machine {
-        Machine::Host => "on the host, one thread,",
+        Machine::Host => "on one thread of the host",
         Machine::Rv32imac => "on an FE310 (rv32imac)",
         Machine::Thumbv6m => "on a Cortex-M0 (thumbv6m)",
     }

@@ -97,9 +97,9 @@ fn scatter(
     Ok(figure(heading, &plot, metric.more_is_better(), &notes))
 }
 
-/// Error against run time, a plot for each scene, metric and machine.
+/// Error against run time, a plot for each scene, metric and machine; and against the bytes of the blob.
 pub(super) fn error_against_cost(context: &Context<'_>) -> Result<Markup, PageError> {
-    for_scenes_and_metrics(context, Study::Kernels, |rows, metric| {
+    for_scenes_and_metrics(context, |rows, metric| {
         let mut figures = Vec::new();
         for (machine, rows) in by_machine(rows) {
             for (_, rows) in grouped(&rows, setting) {
@@ -107,18 +107,10 @@ pub(super) fn error_against_cost(context: &Context<'_>) -> Result<Markup, PageEr
                 figures.push(scatter(context, &rows, metric, Against::Cost(machine), &heading)?);
             }
         }
-        Ok(figures)
-    })
-}
-
-/// Error against the bytes of the blob, a plot for each scene and metric.
-pub(super) fn error_against_bytes(context: &Context<'_>) -> Result<Markup, PageError> {
-    for_scenes_and_metrics(context, Study::Kernels, |rows, metric| {
-        let mut figures: Vec<Markup> = Vec::new();
-        // The same blob on every machine, so the machine with the most is enough.
+        // The blob is the same on every machine, so the machine that drew most is enough.
         let most = by_machine(rows).into_iter().min_by_key(|(_, rows)| std::cmp::Reverse(drawn(rows).len()));
         for (_, rows) in most.iter().flat_map(|(_, rows)| grouped(rows, setting)) {
-            let heading = format!("{} at {}", rows[0].point.scene, size_text(rows[0]));
+            let heading = format!("Size of the blob: {} at {}", rows[0].point.scene, size_text(rows[0]));
             figures.push(scatter(context, &rows, metric, Against::Bytes, &heading)?);
         }
         Ok(figures)
@@ -127,12 +119,11 @@ pub(super) fn error_against_bytes(context: &Context<'_>) -> Result<Markup, PageE
 
 fn for_scenes_and_metrics(
     context: &Context<'_>,
-    study: Study,
     figures: impl Fn(&[&Row], Metric) -> Result<Vec<Markup>, PageError>,
 ) -> Result<Markup, PageError> {
     let mut parts = Vec::new();
     for (index, scene) in context.scenes.iter().enumerate() {
-        let rows = context.rows(study, scene);
+        let rows = context.rows(Study::Kernels, scene);
         if rows.is_empty() {
             continue;
         }

@@ -24,12 +24,14 @@ mod study;
 mod summary;
 mod table;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::Report;
-use super::row::{Outcome, Row, Study};
+use super::row::{Outcome, Row, SCHEMA, Study, name};
+use super::sweep::FILES;
+use crate::files::{self, FileError};
 use context::{Context, settings};
 use metric::Metric;
 use table::{Cell, Column, table};
@@ -40,6 +42,55 @@ pub enum PageError {
     /// A plot could not be drawn.
     #[error("a plot could not be drawn: {0}")]
     Plot(String),
+}
+
+/// Why a page could not be made anew.
+#[derive(Debug, thiserror::Error)]
+pub enum RenewError {
+    /// A file could not be read or written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// What is there is no report.
+    #[error("{}: not a report ({reason}); give the folder of one that `intray report -o` wrote", path.display())]
+    NoReport {
+        /// The file.
+        path: PathBuf,
+        /// What the parser says.
+        reason: String,
+    },
+    /// It is of another schema.
+    #[error("{}: a report of the schema {found}, and this program reads {SCHEMA}; measure it anew", path.display())]
+    OtherSchema {
+        /// The file.
+        path: PathBuf,
+        /// The schema that it names.
+        found: String,
+    },
+    /// The page.
+    #[error(transparent)]
+    Page(#[from] PageError),
+}
+
+/// Makes the page in a report's folder anew from its `report.json` and its pictures; the page's path.
+///
+/// # Errors
+/// [`RenewError`] where there is no report of this schema, or its page cannot be made or written.
+pub fn renew(folder: &Path) -> Result<PathBuf, RenewError> {
+    /// Enough of a report to know whether the rest can be read.
+    #[derive(serde::Deserialize)]
+    struct Stated {
+        schema: String,
+    }
+    let [json, _, html] = FILES.map(|name| folder.join(name));
+    let bytes = files::read(&json)?;
+    let wrong = |error: serde_json::Error| RenewError::NoReport { path: json.clone(), reason: error.to_string() };
+    let Stated { schema } = serde_json::from_slice(&bytes).map_err(wrong)?;
+    if schema != SCHEMA {
+        return Err(RenewError::OtherSchema { path: json, found: schema });
+    }
+    let report: Report = serde_json::from_slice(&bytes).map_err(wrong)?;
+    files::write_atomically(&html, page(&report, folder)?.as_bytes())?;
+    Ok(html)
 }
 
 /// The page of a report whose pictures are in `folder`. A picture that cannot be read is named in its place.
@@ -87,10 +138,9 @@ pub fn page(report: &Report, folder: &Path) -> Result<String, PageError> {
 }
 
 /// The parts of a page by their names in addresses.
-const PARTS: [(&str, &str); 9] = [
+const PARTS: [(&str, &str); 8] = [
     ("summary", "Summary"),
     ("time", "Error against run time"),
-    ("bytes", "Blob"),
     ("growth", "Growth"),
     ("knobs", "Knobs"),
     ("causes", "Causes"),
@@ -136,16 +186,20 @@ fn choice(kind: &str, title: &str, names: &[&str], hints: &[&str]) -> Markup {
 }
 
 fn summary(context: &Context<'_>) -> Markup {
-    let sentences = summary::sentences(context.report);
+    let sentences = summary::sentences(context);
     let overview = overview::overview(context.report, &context.kernels);
+    let of_all = summary::over_all(&overview);
     html! {
         section #summary {
             h2 { "Summary" }
-            @for (scene, sentences) in &sentences {
-                @if sentences.is_empty() {
-                    p { "Nothing was measured for " (scene) "." }
-                } @else {
+            @if !of_all.is_empty() { ul { @for sentence in &of_all { li { (sentence) } } } }
+            // What is short need not be opened first.
+            details open[sentences.len() <= 2] {
+                summary { "Scene by scene" }
+                @for (scene, sentences) in &sentences {
+                    h3 { (scene) }
                     ul { @for sentence in sentences { li { (sentence) } } }
+                    @if sentences.is_empty() { p { "Nothing was measured." } }
                 }
             }
             @if !overview.is_empty() {
@@ -192,14 +246,10 @@ fn plots(context: &Context<'_>) -> Result<Markup, PageError> {
             }
             p {
                 "Left is faster, below is nearer to the reference. Filled points are on the Pareto front, the line: no other \
-                 is as fast and as near. Gray rings are dominated: some other kernel is at least as good in both."
+                 is as fast and as near. Gray rings are dominated: some other kernel is at least as good in both. The \
+                 last plot has in place of the time the bytes of the blob, the scene as a chip stores it."
             }
             (figures::error_against_cost(context)?)
-        }
-        section #bytes {
-            h2 { "Error against the size of the blob" }
-            p { "The blob is the scene as a chip stores it, in flash. The front is drawn as above." }
-            (figures::error_against_bytes(context)?)
         }
         section #growth {
             h2 { "Growth" }
@@ -237,7 +287,7 @@ fn tables(context: &Context<'_>) -> Markup {
             html! {
                 h3 { (study::title(study)) }
                 @if !common.is_empty() { p.note { "All with: " (common) "." } }
-                (table(&format!("table-{}", study::id(study)), &columns, &indices))
+                (table(&format!("table-{}", name(&study)), &columns, &indices))
             }
         })
     };
@@ -268,15 +318,11 @@ fn failures(context: &Context<'_>) -> Markup {
     };
     let columns = [
         column("scene", &|row, _| row.point.scene.clone()),
-        column("machine", &|row, _| columns::short_name(row.point.machine).into()),
+        column("machine", &|row, _| name(&row.point.machine)),
         column("kernel", &|row, _| row.point.kernel.clone()),
-        column("study", &|row, _| study::id(row.point.study).into()),
+        column("study", &|row, _| name(&row.point.study)),
         column("settings", &|row, _| {
-            settings(&row.point)
-                .into_iter()
-                .map(|(name, value)| format!("{name} {value}"))
-                .collect::<Vec<_>>()
-                .join(", ")
+            settings(&row.point).into_iter().map(|(key, value)| format!("{key} {value}")).collect::<Vec<_>>().join(", ")
         }),
         column("why", &|_, reason| reason.clone()),
     ];

@@ -81,7 +81,11 @@ impl Scatter<'_> {
         let steps: Vec<(i32, i32)> = steps.into_iter().map(pixel).collect();
         root.draw(&PathElement::new(steps.clone(), FAINT.stroke_width(1)))?;
 
-        for (index, mark) in self.marks.iter().enumerate() {
+        // What is on the front lies on what is not.
+        let mut order: Vec<usize> = (0..self.marks.len()).collect();
+        order.sort_by_key(|&index| stays[index]);
+        for index in order {
+            let mark = &self.marks[index];
             let point = pixel(at[index]);
             let colour = if stays[index] { canvas::colour(mark.colour) } else { FAINT };
             if let Some([least, most]) = spreads[index] {

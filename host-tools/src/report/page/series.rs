@@ -63,6 +63,10 @@ pub(super) fn series(context: &Context<'_>, study: Study, rows: &[&Row], shown: 
                 None => points.push((x, value)),
             }
         }
+        // What the kernel decides is no step on the way from number to number.
+        if settings_of_all.last() == Some(&None) {
+            points.push((settings_of_all.len() as f64 - 1.5, None));
+        }
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         let drawn: Vec<(f64, f64)> = points.iter().filter_map(|&(x, value)| Some((x, value?))).collect();
         let mut name = rest.kernel.clone();

@@ -19,22 +19,6 @@ pub(super) const STUDIES: [Study; 10] = [
     Study::Grid,
 ];
 
-/// Its name in addresses.
-pub(super) fn id(study: Study) -> &'static str {
-    match study {
-        Study::Kernels => "kernels",
-        Study::C => "c",
-        Study::D => "d",
-        Study::E => "e",
-        Study::Leaf => "leaf",
-        Study::Grid => "grid",
-        Study::Samples => "samples",
-        Study::Depth => "depth",
-        Study::Size => "size",
-        Study::Triangles => "triangles",
-    }
-}
-
 /// Its heading.
 pub(super) fn title(study: Study) -> &'static str {
     match study {
