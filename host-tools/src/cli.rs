@@ -8,6 +8,7 @@ mod emulate;
 mod failure;
 mod input;
 mod inspect;
+mod load;
 mod output;
 mod prep;
 mod progress;

@@ -11,6 +11,7 @@ use core_rt::profile::Full;
 use core_rt::scene::Scene;
 use float_rt::{Float32, Float64};
 
+use crate::grid::{Grid, GridError};
 use crate::model::Model;
 use crate::prepare::{self, Options, PrepareError, Prepared};
 use crate::render::{self, Progress, Rendered};
@@ -18,7 +19,7 @@ use crate::trace::{Measure, Trace, Tracer};
 use crate::witness::Seen;
 
 /// What can be done with a kernel.
-pub trait Engine: Sync {
+pub trait Engine: Sync + std::fmt::Debug {
     /// The kernel's name.
     fn name(&self) -> &'static str;
     /// The kernel's number in a blob.
@@ -27,6 +28,11 @@ pub trait Engine: Sync {
     fn grid_bits(&self) -> u32;
     /// The least radius of a sphere, grid units.
     fn radius_min(&self) -> i32;
+    /// The finest grid that it has for a model.
+    ///
+    /// # Errors
+    /// Where it has none.
+    fn grid(&self, model: &Model) -> Result<Grid, GridError>;
     /// A model as a blob.
     ///
     /// # Errors
@@ -83,7 +89,7 @@ pub struct Sizes {
 #[derive(Debug)]
 struct Of<K>(PhantomData<K>);
 
-impl<K: Measure> Engine for Of<K> {
+impl<K: Measure + std::fmt::Debug> Engine for Of<K> {
     fn name(&self) -> &'static str {
         K::NAME
     }
@@ -98,6 +104,10 @@ impl<K: Measure> Engine for Of<K> {
 
     fn radius_min(&self) -> i32 {
         K::RADIUS_MIN
+    }
+
+    fn grid(&self, model: &Model) -> Result<Grid, GridError> {
+        Grid::fit::<K>(model)
     }
 
     fn prepare(&self, model: &Model, options: &Options) -> Result<Prepared, PrepareError> {

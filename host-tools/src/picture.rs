@@ -57,6 +57,14 @@ pub enum PictureError {
     },
 }
 
+/// A width and a height as `WxH` has them; those that are too large or negative are 0.
+#[must_use]
+pub fn parse_size(text: &str) -> Option<[u32; 2]> {
+    let (width, height) = text.split_once(['x', 'X'])?;
+    let side = |side: &str| Some(u32::try_from(side.trim().parse::<i64>().ok()?).unwrap_or(0));
+    Some([side(width)?, side(height)?])
+}
+
 /// Whether a picture may have this size: sides of 1 to [`MAX_SIDE`], at most [`MAX_PIXELS`] pixels.
 pub const fn size_is_allowed(width: u32, height: u32) -> bool {
     let sides = width >= 1 && width <= MAX_SIDE && height >= 1 && height <= MAX_SIDE;
