@@ -26,14 +26,17 @@ const TILE: [u16; 2] = [32, 32];
 /// The folder of pictures in a report's folder.
 pub(super) const PICTURES: &str = "pictures";
 
+/// A mesh of fewer triangles, or why there is none.
+type Decimated = Result<Arc<Model>, String>;
+
 /// What every point needs.
 #[derive(Debug)]
 pub(super) struct Bench<'a> {
     scenes: &'a [Scene],
     folder: &'a Path,
     truths: Truths,
-    /// Meshes by scene and number of triangles, or why there is none.
-    decimated: Mutex<BTreeMap<(String, u32), Result<Arc<Model>, String>>>,
+    /// Meshes by scene and number of triangles.
+    decimated: Mutex<BTreeMap<(String, u32), Decimated>>,
     /// Pictures that were written in this run.
     written: Mutex<BTreeSet<String>>,
     /// What times are compared with, of the last point.
@@ -167,7 +170,7 @@ impl<'a> Bench<'a> {
     }
 
     /// A mesh of fewer triangles.
-    fn decimated(&self, scene: &str, model: &Model, target: u32) -> Result<Arc<Model>, String> {
+    fn decimated(&self, scene: &str, model: &Model, target: u32) -> Decimated {
         // Others wait: they would do the same.
         let mut there = self.decimated.lock().unwrap_or_else(PoisonError::into_inner);
         let make = || decimate(model.clone(), target as usize).map(Arc::new).map_err(|error| error.to_string());

@@ -3,8 +3,10 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::fs;
 use std::io::ErrorKind;
+use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::thread::ScopedJoinHandle;
 use std::time::Duration;
 
 use clap::ValueEnum;
@@ -116,13 +118,12 @@ impl Sweep<'_> {
             }
             Ok(())
         };
-        std::thread::scope(|scope| {
+        let ends: Vec<Result<(), SweepError>> = std::thread::scope(|scope| {
             let workers: Vec<_> = (0..rayon::current_num_threads()).map(|_| scope.spawn(worker)).collect();
-            workers
-                .into_iter()
-                .map(|worker| worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
-                .fold(Ok(()), |all: Result<(), SweepError>, one| all.and(one))
-        })?;
+            let join = |worker: ScopedJoinHandle<'_, _>| worker.join().unwrap_or_else(|panic| resume_unwind(panic));
+            workers.into_iter().map(join).collect()
+        });
+        ends.into_iter().collect::<Result<(), SweepError>>()?;
         let (rows, broken) = kept_rows.of(&plan);
         let report = self.report(rows, notes);
         self.write(&report)?;
