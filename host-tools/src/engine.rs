@@ -1,6 +1,8 @@
 //! Kernels by name: what the command line can ask of each, behind one interface.
 
+use std::hint::black_box;
 use std::marker::PhantomData;
+use std::time::Instant;
 
 use core_rt::blob::{BlobError, Header};
 use core_rt::exact::{Exact14, Exact20, Exact29};
@@ -51,6 +53,11 @@ pub trait Engine: Sync + std::fmt::Debug {
     /// # Errors
     /// Where the blob is not one for this kernel.
     fn witness(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<(Rendered, Vec<Seen>), BlobError>;
+    /// Seconds that drawing a blob takes, on the threads of the current rayon pool; checking it beforehand is not counted.
+    ///
+    /// # Errors
+    /// Where the blob is not one for this kernel.
+    fn seconds(&self, blob: &[u8], tile: [u16; 2]) -> Result<f64, BlobError>;
     /// What finds the nearest hits in a blob's scene.
     ///
     /// # Errors
@@ -131,6 +138,13 @@ impl<K: Measure + std::fmt::Debug> Engine for Of<K> {
 
     fn witness(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<(Rendered, Vec<Seen>), BlobError> {
         Ok(render::witness(&Scene::<Full<K>>::new_checked(blob)?, tile, progress))
+    }
+
+    fn seconds(&self, blob: &[u8], tile: [u16; 2]) -> Result<f64, BlobError> {
+        let scene = Scene::<Full<K>>::new_checked(blob)?;
+        let begin = Instant::now();
+        black_box(render::render(&scene, tile, &|_| ()));
+        Ok(begin.elapsed().as_secs_f64())
     }
 
     fn tracer<'a>(&self, blob: &'a [u8]) -> Result<Box<dyn Trace + 'a>, BlobError> {

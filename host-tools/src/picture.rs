@@ -136,15 +136,11 @@ impl Picture {
         Ok(Self { width, height, rgb: decoded.as_raw().as_chunks().0.to_vec() })
     }
 
-    /// Writes an 8-bit PNG, gray where every pixel is and RGB otherwise, whole or not at all.
-    ///
-    /// # Errors
-    /// [`PictureError`] where the folder does not exist or cannot be written to, or the size is not allowed.
-    pub fn write_png(&self, path: &Path) -> Result<(), PictureError> {
+    /// The bytes of an 8-bit PNG, gray where every pixel is and RGB otherwise; `None` where the size is not allowed.
+    pub fn to_png(&self) -> Option<Vec<u8>> {
         let (width, height) = (self.width, self.height);
-        let refused = PictureError::Size { path: path.into(), width, height };
         if !size_is_allowed(width, height) {
-            return Err(refused);
+            return None;
         }
         let mut bytes = Vec::new();
         let encoder = PngEncoder::new(&mut bytes);
@@ -154,7 +150,19 @@ impl Picture {
         } else {
             encoder.write_image(self.rgb.as_flattened(), width, height, ExtendedColorType::Rgb8)
         };
-        encoded.map_err(|_| refused)?;
+        encoded.ok().map(|()| bytes)
+    }
+
+    /// Writes [`Self::to_png`], whole or not at all.
+    ///
+    /// # Errors
+    /// [`PictureError`] where the folder does not exist or cannot be written to, or the size is not allowed.
+    pub fn write_png(&self, path: &Path) -> Result<(), PictureError> {
+        let bytes = self.to_png().ok_or_else(|| PictureError::Size {
+            path: path.into(),
+            width: self.width,
+            height: self.height,
+        })?;
         Ok(files::write_atomically(path, &bytes)?)
     }
 }

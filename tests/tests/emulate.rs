@@ -105,6 +105,19 @@ fn pictures_are_the_hosts() {
     }
 }
 
+/// Where rays may not go on, the background shows in mirrors and glass, and what draws it is linked.
+#[test]
+fn without_depth_the_picture_is_the_hosts() {
+    let mut model = built_in();
+    model.render.max_depth = 0;
+    for board in boards() {
+        let blob = prepared(&model, "exact14");
+        let elf = wanted(board, &blob).provide().unwrap();
+        let (outcome, _) = run(&elf, board, &blob, None).unwrap();
+        assert_eq!(outcome.picture, host(&blob, "exact14").picture, "{}", board.name);
+    }
+}
+
 #[test]
 fn rays_and_tests_are_counted_as_on_the_host() {
     for board in boards() {

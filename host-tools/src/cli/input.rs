@@ -185,7 +185,7 @@ impl ThreadArguments {
 }
 
 /// `WxH`.
-fn size(text: &str) -> Result<[u32; 2], String> {
+pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
     let Some(size) = parse_size(text) else {
         return Err("expected WIDTHxHEIGHT in pixels, such as 640x480".into());
     };
