@@ -46,7 +46,11 @@ addEventListener("load", () => {
     text: document.body.innerText,
     elements: [...new Set(all("*").map((element) => element.tagName.toLowerCase()))],
     plots: all("svg").map((svg) => all("text", svg).map((text) => text.textContent.trim())),
-    loaded: performance.getEntriesByType("resource").map((entry) => entry.name).filter((name) => !name.startsWith("data:")),
+    // A browser lists no file among what it loaded, so what is referred to counts too.
+    loaded: all("[src], [srcset], [href], [data], [poster]")
+      .flatMap((element) => ["src", "srcset", "href", "data", "poster"].map((name) => element.getAttribute(name)))
+      .concat(performance.getEntriesByType("resource").map((entry) => entry.name))
+      .filter((address) => address !== null && !/^(data:|#)/.test(address)),
     pictures: all("img").map((image) => image.complete && image.naturalWidth > 0),
     wide: document.documentElement.scrollWidth > document.documentElement.clientWidth,
   };

@@ -32,8 +32,12 @@ fn a_ray(value: u64, measured: &Measured) -> Cell {
     if measured.rays == 0 { Cell::Empty } else { figure(value as f64 / measured.rays as f64) }
 }
 
-/// A title, what it means, and the cell of a point.
-type Given = (&'static str, &'static str, fn(&Point, &Measured) -> Cell);
+/// A title, what it means, and how a cell is made.
+type Given<F = OfPoint> = (&'static str, &'static str, F);
+
+type OfPoint = fn(&Point, &Measured) -> Cell;
+type OfTime = fn(&Time) -> Cell;
+type OfWork = fn(&Instructions) -> Cell;
 
 const ERRORS: [Given; 8] = [
     ("over 64, %", "pixels whose gray difference exceeds 64", |point, measured| share(measured.error.over_64, point)),
@@ -49,7 +53,7 @@ const ERRORS: [Given; 8] = [
     ("FLIP", "mean LDR-FLIP, 0 to 1", |_, measured| fixed(measured.error.flip, 6)),
 ];
 
-const TIMES: [(&str, &str, fn(&Time) -> Cell); 4] = [
+const TIMES: [Given<OfTime>; 4] = [
     ("time", "the median round, one thread", |time| Cell::Number(duration(time.seconds), time.seconds)),
     ("× f32's", "the median ratio to the time of f32 in the same round", |time| fixed(time.ratio[1], 3)),
     ("least to greatest", "that ratio's spread over the rounds", |time| {
@@ -69,7 +73,7 @@ const WORK: [Given; 2] = [
     }),
 ];
 
-const MEMORY: [(&str, &str, fn(&Instructions) -> Cell); 3] = [
+const MEMORY: [Given<OfWork>; 3] = [
     ("instructions", "from the first camera ray of each tile to its last pixel", |work| count(work.instructions)),
     ("code, B", "code and constants", |work| count(work.text_bytes)),
     ("RAM, B", "variables and the stack at its deepest", |work| count(work.ram_bytes)),

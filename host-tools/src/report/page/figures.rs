@@ -178,8 +178,11 @@ fn lines(
     Ok(figure(heading, &plot, more_is_better, &[]))
 }
 
+type CauseOf = fn(&Causes) -> Cause;
+type CountOf = fn(&Cause) -> u64;
+
 /// The causes and what they are called, in the order of the colours.
-const CAUSES: [(&str, fn(&Causes) -> Cause); 6] = [
+const CAUSES: [(&str, CauseOf); 6] = [
     ("hole", |causes| causes.holes),
     ("another surface", |causes| causes.visibility),
     ("mirrored or refracted ray", |causes| causes.secondary),
@@ -189,7 +192,7 @@ const CAUSES: [(&str, fn(&Causes) -> Cause); 6] = [
 ];
 
 /// Which pixels are counted.
-const COUNTS: [(&str, fn(&Cause) -> u64); 3] = [
+const COUNTS: [(&str, CountOf); 3] = [
     ("Pixels over 64", |cause| cause.over_64),
     ("Pixels over 4", |cause| cause.over_4),
     ("Pixels that differ at all", |cause| cause.pixels),
