@@ -187,13 +187,13 @@ fn numbers(scene: &Traits, quick: bool, of: &impl Fn(Study, &str) -> Point, kern
         _ => &[],
     };
     add(Study::Grid, &few(bits), |point, bits| point.grid_bits = Some(bits));
-    let widths = [2, 3, 4].map(|quarters| quarters * scene.size[0].min(CHIP[0]) / 4);
+    let quarters: &[u32] = if quick { &[2, 4] } else { &[2, 3, 4] };
     // The whole mesh is the series' end.
     let decimated: Vec<u32> = targets(scene);
     if !bits.is_empty() {
         all.push(of(Study::Grid, kernel));
     }
-    for width in few(&widths) {
+    for width in quarters.iter().map(|quarter| quarter * scene.size[0].min(CHIP[0]) / 4) {
         let [w, h] = scene.size;
         let height = (u64::from(h) * u64::from(width) / u64::from(w).max(1)).max(1) as u32;
         all.push(Point { size: [width.max(1), height], ..of(Study::Size, kernel) });

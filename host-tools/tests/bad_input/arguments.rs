@@ -91,7 +91,7 @@ fn words_that_mean_nothing() {
     refused("frobnicate", "unrecognized subcommand 'frobnicate'\n\nUsage: intray [COMMAND]");
     refused(
         "rendr scene.obj -o out.png",
-        "unrecognized subcommand 'rendr'\n\n  tip: a similar subcommand exists: 'render'\n\nUsage: intray [COMMAND]",
+        "unrecognized subcommand 'rendr'\n\n  tip: some similar subcommands exist: 'report', 'render'\n\nUsage: intray [COMMAND]",
     );
     refused(
         "inspect scene.obj --jsn",

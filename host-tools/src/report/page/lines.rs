@@ -87,7 +87,9 @@ impl Lines<'_> {
             let left = xs.end + 20;
             root.draw(&PathElement::new([*end, (xs.end + 4, end.1), (left - 3, height)], FAINT.stroke_width(1)))?;
             let style = canvas::text(INK, HPos::Left, VPos::Center);
-            root.draw(&Circle::new((left + 1, height), 3, canvas::colour(line.colour).filled()))?;
+            // A dash: a dot would be taken for a point.
+            let dash = [(left - 3, height), (left + 5, height)];
+            root.draw(&PathElement::new(dash, canvas::colour(line.colour).stroke_width(3)))?;
             root.draw(&Text::new(line.name.clone(), (left + 8, height), style))?;
         }
         Ok(())
