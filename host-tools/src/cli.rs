@@ -13,6 +13,7 @@ mod prep;
 mod progress;
 mod render;
 mod run_elf;
+mod stress;
 mod trace;
 
 use std::process::ExitCode;
@@ -39,6 +40,7 @@ enum Command {
     Trace(trace::Arguments),
     Compare(compare::Arguments),
     Emulate(emulate::Arguments),
+    Stress(stress::Arguments),
     #[command(hide = true)]
     RunElf(run_elf::Arguments),
 }
@@ -54,6 +56,7 @@ pub fn run() -> ExitCode {
         Some(Command::Trace(arguments)) => trace::run(&arguments),
         Some(Command::Compare(arguments)) => compare::run(&arguments),
         Some(Command::Emulate(arguments)) => emulate::run(&arguments),
+        Some(Command::Stress(arguments)) => stress::run(&arguments),
         Some(Command::RunElf(arguments)) => run_elf::run(&arguments),
     };
     match done {

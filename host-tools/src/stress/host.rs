@@ -1,0 +1,143 @@
+//! Cases on this computer.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use rayon::prelude::*;
+
+use super::envelope::{Envelope, Strays, truth};
+use super::promise::Promise;
+use super::row::{Figures, Outcome, Row};
+use super::{Case, Subject, rays};
+use crate::compare::difference;
+use crate::engine::Engine;
+use crate::picture::Picture;
+use crate::prepare::{Blob, Options, losses};
+use crate::reference::{Reference, Sample, encode};
+use crate::report::row::Machine;
+use crate::tree::TreeOptions;
+
+/// A tile's sides, pixels.
+const TILE: [u16; 2] = [16, 16];
+
+/// A case by a kernel: the row, and what a chip is to draw, and be the same as.
+#[derive(Clone, Debug)]
+pub struct Done {
+    /// The host's row.
+    pub row: Row,
+    /// The blob and its picture; `None` where there is none.
+    pub drawn: Option<(Blob, Picture)>,
+}
+
+/// A case by every kernel, in their order. Whatever a case does, there is a row for it.
+#[must_use]
+pub fn run(case: &Case, kernels: &[&'static dyn Engine]) -> Vec<Done> {
+    let empty = |engine: &&'static dyn Engine, outcome, reason| Done {
+        row: blank(case, *engine, outcome, reason),
+        drawn: None,
+    };
+    let made = catch_unwind(|| (case.subject)());
+    let Ok(Subject { model, rays }) = made else {
+        return kernels.iter().map(|engine| empty(engine, Outcome::Fail, "its generator panicked".into())).collect();
+    };
+    let prepared = catch_unwind(AssertUnwindSafe(|| {
+        let reference = Reference::new(&model);
+        let truth = truth(&model, &reference);
+        (reference, truth)
+    }));
+    let Ok((reference, truth)) = prepared else {
+        return kernels.iter().map(|engine| empty(engine, Outcome::Fail, "the reference panicked".into())).collect();
+    };
+    let subject = Subject { model: model.clone(), rays };
+    kernels
+        .par_iter()
+        .map(|engine| {
+            let done = catch_unwind(AssertUnwindSafe(|| one(case, &subject, &reference, &truth, *engine)));
+            done.unwrap_or_else(|panic| empty(engine, Outcome::Fail, said(panic.as_ref())))
+        })
+        .collect()
+}
+
+/// What a panic says.
+fn said(panic: &(dyn std::any::Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().copied().or_else(|| panic.downcast_ref::<String>().map(String::as_str));
+    format!("it panicked: {}", text.unwrap_or("without a word"))
+}
+
+/// A row of which nothing is measured.
+fn blank(case: &Case, engine: &dyn Engine, outcome: Outcome, reason: String) -> Row {
+    Row {
+        name: case.name,
+        group: case.group,
+        kernel: engine.name(),
+        machine: Machine::Host,
+        outcome,
+        measured: None,
+        bound: 0,
+        reason,
+        figures: None,
+        work: None,
+        relative_work: None,
+        part_grids: case.part_grids,
+    }
+}
+
+/// How a case is prepared.
+#[must_use]
+pub fn options(case: &Case) -> Options {
+    let tree = TreeOptions::default();
+    let tree = case.leaf.map_or(tree, |leaf_max| TreeOptions { leaf_max, leaf_always: true, ..tree });
+    Options { tree, ..Options::default() }
+}
+
+fn one(case: &Case, subject: &Subject, reference: &Reference<'_>, truth: &[Sample], engine: &dyn Engine) -> Done {
+    let model = &subject.model;
+    let blank = |outcome, reason| Done { row: blank(case, engine, outcome, reason), drawn: None };
+    let prepared = match engine.prepare(model, &options(case)) {
+        Ok(prepared) => prepared,
+        Err(error) => return blank(Outcome::Refused, error.to_string()),
+    };
+    let warnings = losses(engine.name(), engine.grid_bits(), engine.radius_min(), model, &prepared.grid);
+    let warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+    let rendered = match engine.render(prepared.blob.bytes(), TILE, &|_| {}) {
+        Ok(rendered) => rendered,
+        Err(error) => return blank(Outcome::Fail, format!("its own blob is refused: {error}")),
+    };
+    let promise = Promise::of(engine.name());
+    let envelope = Envelope::new(case, model, reference, truth, promise, &prepared.grid);
+    let Strays { pixels, saturated } = envelope.strays(&rendered.picture);
+    let of_rays = match engine.tracer(prepared.blob.bytes()) {
+        Ok(tracer) => rays::stray(&subject.rays, tracer.as_ref(), reference, &promise, &prepared.grid),
+        Err(error) => return blank(Outcome::Fail, format!("its own blob cannot be traced: {error}")),
+    };
+    let (measured, bound) = (pixels + of_rays.rays, envelope.bound());
+    let (outcome, reason) = match (measured <= bound, warnings.is_empty()) {
+        (true, true) => (Outcome::Pass, String::new()),
+        (true, false) => (Outcome::Pass, format!("prep warns: {}", warnings.join("; "))),
+        (false, false) => (Outcome::Refused, format!("prep warns: {}", warnings.join("; "))),
+        (false, true) => {
+            (Outcome::Fail, format!("{pixels} pixels and {} rays stray, and prep says nothing", of_rays.rays))
+        }
+    };
+    let [width, height] = model.render.size;
+    let expected =
+        Picture::from_fn(width, height, |x, y| encode(truth[(y * width + x) as usize].colour, model.render.transfer));
+    let gray = difference(&rendered.picture, &expected);
+    let over =
+        |most: u8| gray.as_ref().map_or(0, |gray| gray.pixels().iter().filter(|pixel| pixel[0] > most).count() as u64);
+    let counts = &rendered.counts;
+    let row = Row {
+        measured: Some(measured),
+        bound,
+        figures: Some(Figures {
+            over_4: over(4),
+            over_64: over(64),
+            holes: of_rays.holes,
+            self_hits: 0,
+            saturated,
+            image_crc32: format!("{:08x}", rendered.picture.crc32()),
+        }),
+        work: Some((counts.box_tests + counts.triangle_tests) as f64 / counts.rays().max(1) as f64),
+        ..blank(outcome, reason).row
+    };
+    Done { row, drawn: Some((prepared.blob, rendered.picture)) }
+}
