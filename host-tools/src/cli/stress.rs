@@ -5,16 +5,19 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use serde::Serialize;
 
-use super::failure::Failure;
+use super::failure::{Failure, warn};
 use super::{output, progress};
+use crate::emulate;
 use crate::engine::{ENGINES, Engine};
+use crate::files;
 use crate::report::row::Machine;
-use crate::stress::cases;
+use crate::stress::chip::{self, Chip};
 use crate::stress::row::{Outcome, Row};
-use crate::stress::{Case, host, table};
+use crate::stress::{Case, cases, suite, table};
 
-/// The file that the rows go to, in the folder that is asked for.
-const FILE: &str = "stress.json";
+/// The files in the folder that is asked for.
+const JSON: &str = "stress.json";
+const TEXT: &str = "stress.txt";
 
 /// Draw the stiff and the extreme cases by every kernel, and check each against what is promised
 #[derive(Debug, clap::Args)]
@@ -80,13 +83,22 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         .into_iter()
         .filter(|e| arguments.kernels.is_empty() || arguments.kernels.iter().any(|k| k == e.name()))
         .collect();
+    let machines: Vec<Machine> = match arguments.machines.as_slice() {
+        [] => vec![Machine::Host, Machine::Rv32imac, Machine::Thumbv6m],
+        asked => asked.iter().map(|&name| name.into()).collect(),
+    };
     let bar = progress::bar("on the host", cases.len() as u64);
-    let mut rows = Vec::new();
-    for case in &cases {
-        rows.extend(host::run(case, &kernels).into_iter().map(|done| done.row));
-        bar.inc(1);
-    }
+    let done = suite::on_host(&cases, &kernels, &|| bar.inc(1));
     bar.finish_and_clear();
+    let chips = chips(&machines, &kernels, arguments.machines.is_empty())?;
+    let bar = progress::bar("on chips", (chips.len() * done.len() / kernels.len().max(1)) as u64);
+    let on_chips = suite::on_chips(&done, &chips, &|| bar.inc(1));
+    bar.finish_and_clear();
+    let rows = suite::rows(done, on_chips, machines.contains(&Machine::Host));
+    if let Some(folder) = &arguments.output {
+        files::write_atomically(&folder.join(JSON), &serde_json::to_vec_pretty(&Report { cases: &rows })?)?;
+        files::write_atomically(&folder.join(TEXT), table::text(&rows).as_bytes())?;
+    }
     if arguments.json {
         output::json(&Report { cases: &rows })?
     } else {
@@ -96,6 +108,34 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         0 => Ok(()),
         failed => Err(Failure::check(format!("{failed} of {} rows fail", rows.len()))),
     }
+}
+
+/// The firmware of every kernel on the chips among these machines. What cannot be emulated here is an error where it was asked
+/// for by name, else a warning.
+fn chips(
+    machines: &[Machine],
+    kernels: &[&'static dyn Engine],
+    is_default: bool,
+) -> Result<Vec<(Machine, Chip)>, Failure> {
+    let mut chips = Vec::new();
+    let all = cases::all();
+    for &machine in machines {
+        let Some(board) = chip::board(machine) else { continue };
+        if let Err(error) = emulate::check(board) {
+            if is_default {
+                warn(format_args!("{} is left out: {error}", table::machine(machine)));
+                continue;
+            }
+            return Err(error.into());
+        }
+        for &engine in kernels.iter().filter(|engine| chip::has(**engine)) {
+            let spinner = progress::spinner("building the firmware");
+            let chip = Chip::provide(board, engine, &all);
+            spinner.finish_and_clear();
+            chips.push((machine, chip?));
+        }
+    }
+    Ok(chips)
 }
 
 /// The cases of these names, or all.

@@ -35,6 +35,7 @@ pub struct Strays {
 }
 
 /// The reference of a case, and what a kernel may do to it.
+#[derive(Debug)]
 pub struct Envelope<'m> {
     model: &'m Model,
     reference: &'m Reference<'m>,
@@ -50,6 +51,7 @@ pub struct Envelope<'m> {
     /// Pixels a radian; and how many unit vectors turn what is seen by way of other surfaces.
     per_radian: f64,
     bends: f64,
+    grazes: bool,
     /// By how many radians each triangle and sphere turns on the grid.
     turns: Vec<f64>,
 }
@@ -93,6 +95,7 @@ impl<'m> Envelope<'m> {
             turned: largest * per_unit / libm::exp2(f64::from(promise.direction_bits)),
             per_radian: if largest > 0.0 { per_unit * largest } else { 0.0 },
             bends: case.bends,
+            grazes: case.grazes,
             turns: turns(model, grid),
         }
     }
@@ -123,7 +126,9 @@ impl<'m> Envelope<'m> {
         let levels = self.levels + (255.0 * self.steepness * turn).min(MOST_LEVELS);
         let depth = near.iter().map(|hit| self.depth(x, y, hit)).fold(f64::INFINITY, f64::min);
         // A mirror that turns turns what is seen in it by twice as much.
-        let bent = self.bends * (self.promise.turn + 2.0 * turn) * self.per_radian;
+        let each = self.promise.turn + 2.0 * turn;
+        let grazing = if self.grazes { (2.0 * each).sqrt() } else { 0.0 };
+        let bent = (self.bends * each + grazing) * self.per_radian;
         let radius = (self.moved / depth + self.turned + bent).min(FARTHEST);
         let pixel = DVec3::from_array(pixel.map(f64::from));
         let mut range = [DVec3::INFINITY, DVec3::NEG_INFINITY];

@@ -2,6 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use glam::DVec3;
 use rayon::prelude::*;
 
 use super::envelope::{Envelope, Strays, truth};
@@ -10,6 +11,7 @@ use super::row::{Figures, Outcome, Row};
 use super::{Case, Subject, rays};
 use crate::compare::difference;
 use crate::engine::Engine;
+use crate::model::Model;
 use crate::picture::Picture;
 use crate::prepare::{Blob, Options, losses};
 use crate::reference::{Reference, Sample, encode};
@@ -24,8 +26,19 @@ const TILE: [u16; 2] = [16, 16];
 pub struct Done {
     /// The host's row.
     pub row: Row,
-    /// The blob and its picture; `None` where there is none.
-    pub drawn: Option<(Blob, Picture)>,
+    /// What was drawn; `None` where nothing was.
+    pub drawn: Option<Drawn>,
+}
+
+/// A blob and its picture.
+#[derive(Clone, Debug)]
+pub struct Drawn {
+    /// The blob.
+    pub blob: Blob,
+    /// The picture.
+    pub picture: Picture,
+    /// How many rays it took.
+    pub rays: u64,
 }
 
 /// A case by every kernel, in their order. Whatever a case does, there is a row for it.
@@ -81,18 +94,18 @@ fn blank(case: &Case, engine: &dyn Engine, outcome: Outcome, reason: String) -> 
     }
 }
 
-/// How a case is prepared.
+/// How a scene with leaves of so many triangles is prepared; by their cost, if `None`.
 #[must_use]
-pub fn options(case: &Case) -> Options {
+pub fn options(leaf: Option<u32>) -> Options {
     let tree = TreeOptions::default();
-    let tree = case.leaf.map_or(tree, |leaf_max| TreeOptions { leaf_max, leaf_always: true, ..tree });
+    let tree = leaf.map_or(tree, |leaf_max| TreeOptions { leaf_max, leaf_always: true, ..tree });
     Options { tree, ..Options::default() }
 }
 
 fn one(case: &Case, subject: &Subject, reference: &Reference<'_>, truth: &[Sample], engine: &dyn Engine) -> Done {
     let model = &subject.model;
     let blank = |outcome, reason| Done { row: blank(case, engine, outcome, reason), drawn: None };
-    let prepared = match engine.prepare(model, &options(case)) {
+    let prepared = match engine.prepare(model, &options(case.leaf)) {
         Ok(prepared) => prepared,
         Err(error) => return blank(Outcome::Refused, error.to_string()),
     };
@@ -106,18 +119,28 @@ fn one(case: &Case, subject: &Subject, reference: &Reference<'_>, truth: &[Sampl
     let envelope = Envelope::new(case, model, reference, truth, promise, &prepared.grid);
     let Strays { pixels, saturated } = envelope.strays(&rendered.picture);
     let of_rays = match engine.tracer(prepared.blob.bytes()) {
-        Ok(tracer) => rays::stray(&subject.rays, tracer.as_ref(), reference, &promise, &prepared.grid),
+        Ok(tracer) => rays::stray(&subject.rays, tracer.as_ref(), reference, &promise, &prepared.grid, extent(model)),
         Err(error) => return blank(Outcome::Fail, format!("its own blob cannot be traced: {error}")),
     };
-    let (measured, bound) = (pixels + of_rays.rays, envelope.bound());
-    let (outcome, reason) = match (measured <= bound, warnings.is_empty()) {
-        (true, true) => (Outcome::Pass, String::new()),
-        (true, false) => (Outcome::Pass, format!("prep warns: {}", warnings.join("; "))),
-        (false, false) => (Outcome::Refused, format!("prep warns: {}", warnings.join("; "))),
+    let judged = if promise.edges { of_rays.rays } else { 0 };
+    let (measured, bound) = (pixels + of_rays.rays, envelope.bound() + of_rays.rays - judged);
+    let mut reasons: Vec<String> = Vec::new();
+    if !warnings.is_empty() {
+        reasons.push(format!("prep warns: {}", warnings.join("; ")));
+    }
+    if of_rays.rays > judged {
+        let all = subject.rays.len();
+        reasons.push(format!("{} of {all} rays stray, and nothing is promised of those through edges", of_rays.rays));
+    }
+    let outcome = match (pixels <= envelope.bound() && judged == 0, warnings.is_empty()) {
+        (true, _) => Outcome::Pass,
+        (false, false) => Outcome::Refused,
         (false, true) => {
-            (Outcome::Fail, format!("{pixels} pixels and {} rays stray, and prep says nothing", of_rays.rays))
+            reasons.push(format!("{pixels} pixels and {judged} rays stray, and prep says nothing"));
+            Outcome::Fail
         }
     };
+    let reason = reasons.join("; ");
     let [width, height] = model.render.size;
     let expected =
         Picture::from_fn(width, height, |x, y| encode(truth[(y * width + x) as usize].colour, model.render.transfer));
@@ -139,5 +162,14 @@ fn one(case: &Case, subject: &Subject, reference: &Reference<'_>, truth: &[Sampl
         work: Some((counts.box_tests + counts.triangle_tests) as f64 / counts.rays().max(1) as f64),
         ..blank(outcome, reason).row
     };
-    Done { row, drawn: Some((prepared.blob, rendered.picture)) }
+    Done { row, drawn: Some(Drawn { blob: prepared.blob, picture: rendered.picture, rays: counts.rays() }) }
+}
+
+/// The diagonal of a scene's box.
+fn extent(model: &Model) -> f64 {
+    let [low, high] = model
+        .positions
+        .iter()
+        .fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], &p| [low.min(p), high.max(p)]);
+    if model.positions.is_empty() { 0.0 } else { (high - low).length() }
 }

@@ -8,12 +8,14 @@
 //! warns of what is lost. A picture that is wrong without a word is a failure.
 
 pub mod cases;
+pub mod chip;
 pub mod envelope;
 pub mod host;
 pub mod promise;
 mod rays;
 pub mod row;
 pub mod shapes;
+pub mod suite;
 pub mod table;
 
 use glam::DVec3;
@@ -65,6 +67,8 @@ pub struct Case {
     /// By how many unit vectors, each off by what the kernel's are, the direction to what is seen by way of other surfaces
     /// is off.
     pub bends: f64,
+    /// Whether refracted rays come out as flat as can be: there 1 - turn of a sine is an angle of sqrt(2 turn).
+    pub grazes: bool,
     /// By how many full ranges of a channel a colour changes where a unit vector turns by a radian: 1 for matt surfaces
     /// under one light.
     pub steepness: f64,
@@ -105,6 +109,7 @@ impl Case {
             expectation,
             leverage: 4.0,
             bends: 0.0,
+            grazes: false,
             steepness: 1.0,
             dropped: 0.0,
             leaf: None,

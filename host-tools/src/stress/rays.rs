@@ -10,7 +10,7 @@ use crate::reference::{Hit, Reference};
 use crate::trace::Trace;
 
 /// How many rays beside one are asked for.
-const BESIDE: u32 = 512;
+const BESIDE: u32 = 4096;
 
 /// What is wrong with hits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -21,18 +21,20 @@ pub(super) struct StrayRays {
     pub(super) holes: u64,
 }
 
-/// The rays of a case whose hits stray.
+/// The rays of a case whose hits stray, in a scene of an extent.
 pub(super) fn stray(
     rays: &[[DVec3; 2]],
     tracer: &dyn Trace,
     reference: &Reference<'_>,
     promise: &Promise,
     grid: &Grid,
+    extent: f64,
 ) -> StrayRays {
     let all = rays.par_iter().map(|&[origin, direction]| {
         let found = tracer.nearest(origin, direction);
         let expected = reference.nearest(origin, direction);
-        let far = expected.or(found).map_or(1.0, |hit| hit.t);
+        // Its far end: behind the hits, and across the scene where it starts on one.
+        let far = [expected, found].into_iter().flatten().map(|hit| hit.t).fold(extent / direction.length(), f64::max);
         // Both ends of the ray, and the triangles' corners; and the direction's last place.
         let off = (promise.seen + 1.0) / grid.scale;
         let turn = direction.length() * far * 2.0 / libm::exp2(f64::from(promise.direction_bits));

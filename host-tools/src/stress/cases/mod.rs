@@ -12,6 +12,9 @@ use super::shapes::{Scene, v};
 /// The scene that the work of all others is relative to.
 pub const BENIGN: &str = "benign";
 
+/// The scene whose tree has the most levels.
+pub const DEEPEST: &str = "deepest-tree";
+
 /// All cases, by group, the benign one first.
 #[must_use]
 pub fn all() -> Vec<Case> {

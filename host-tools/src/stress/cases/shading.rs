@@ -40,17 +40,28 @@ pub(super) fn cases() -> Vec<Case> {
         ),
         // A ray that leaves turns by as much as the index more.
         bent(40.0, 8.0, case("ior-10", "Glass of index 10: most of the light is reflected", || glass(10.0))),
-        // At the critical angle the refracted ray grazes, where sqrt(2 turn) stands for turn; its share goes to 0 there.
+        // Its share goes to 0 there.
+        Case {
+            grazes: true,
+            ..bent(
+                8.0,
+                8.0,
+                case(
+                    "critical-angle",
+                    "A prism of index sqrt(2) under 45 degrees: total reflection begins in the middle of the picture",
+                    critical,
+                ),
+            )
+        },
+        // Each of 64 mirrors turns the image, and is left from a little off it.
         bent(
-            8.0,
-            8.0,
-            case(
-                "critical-angle",
-                "A prism of index sqrt(2) under 45 degrees: total reflection begins in the middle of the picture",
-                critical,
-            ),
+            64.0,
+            1.0,
+            Case {
+                leverage: 64.0,
+                ..case("hall-of-mirrors", "Two mirrors that face each other, 64 reflections deep", hall)
+            },
         ),
-        bent(65.0, 1.0, case("hall-of-mirrors", "Two mirrors that face each other, 64 reflections deep", hall)),
         case("faint-lights", "Eight lights of 2^-16, each fading, together as bright as 8 gray levels", faint),
         case("strong-light", "A light of 2^14, far outside its reach", || strong(14)),
         case("too-strong-light", "A light of 2^16, twice as strong as a blob holds: it is said", || strong(16)),

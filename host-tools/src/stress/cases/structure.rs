@@ -14,7 +14,7 @@ pub(super) fn cases() -> Vec<Case> {
     vec![
         case("one-triangle", "A tree without a node", one_triangle),
         case("none-visible", "All of the scene is behind the camera", none_visible),
-        Case { leaf: Some(1), ..case("deepest-tree", "Triangles that the tree can only take off one by one", deepest) },
+        Case { leaf: Some(1), ..case(super::DEEPEST, "Triangles that the tree can only take off one by one", deepest) },
         case("equal-centroids", "500 triangles around one middle, which no plane separates", equal_centroids),
         Case { leaf: Some(1), ..case("leaf-of-1", "The benign scene, a triangle a leaf", || benign().done()) },
         Case {
