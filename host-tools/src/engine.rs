@@ -13,6 +13,7 @@ use crate::model::Model;
 use crate::prepare::{self, Options, PrepareError, Prepared};
 use crate::render::{self, Progress, Rendered};
 use crate::trace::{Measure, Trace, Tracer};
+use crate::witness::Seen;
 
 /// What can be done with a kernel.
 pub trait Engine: Sync {
@@ -39,6 +40,11 @@ pub trait Engine: Sync {
     /// # Errors
     /// Where the blob is not one for this kernel.
     fn render(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<Rendered, BlobError>;
+    /// The same, and what the rays of each pixel saw, row by row.
+    ///
+    /// # Errors
+    /// Where the blob is not one for this kernel.
+    fn witness(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<(Rendered, Vec<Seen>), BlobError>;
     /// What finds the nearest hits in a blob's scene.
     ///
     /// # Errors
@@ -111,6 +117,10 @@ impl<K: Measure> Engine for Of<K> {
 
     fn render(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<Rendered, BlobError> {
         Ok(render::render(&Scene::<Full<K>>::new_checked(blob)?, tile, progress))
+    }
+
+    fn witness(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<(Rendered, Vec<Seen>), BlobError> {
+        Ok(render::witness(&Scene::<Full<K>>::new_checked(blob)?, tile, progress))
     }
 
     fn tracer<'a>(&self, blob: &'a [u8]) -> Result<Box<dyn Trace + 'a>, BlobError> {

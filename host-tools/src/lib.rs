@@ -22,3 +22,4 @@ pub mod stress;
 pub mod textures;
 pub mod trace;
 pub mod tree;
+pub mod witness;

@@ -17,7 +17,7 @@ use super::failure::{Failure, warn};
 use crate::decimate;
 use crate::engine::{self, ENGINES, Engine};
 use crate::files;
-use crate::import::{self, Imported, MOST_SAMPLES};
+use crate::import::{self, GREATEST_DEPTH, Imported, MOST_SAMPLES};
 use crate::model::{Format, Model};
 use crate::picture::{SIZES, size_is_allowed};
 use crate::prepare::{Blob, Degenerates, Options, losses, unplaced};
@@ -47,6 +47,15 @@ pub(super) struct SceneArguments {
     )]
     pub(super) samples: Option<u32>,
 
+    /// How often a ray may be mirrored or refracted, instead of the scene's number
+    #[arg(
+        long,
+        value_name = "N",
+        value_parser = clap::value_parser!(u32).range(0..=i64::from(GREATEST_DEPTH)),
+        allow_negative_numbers = true
+    )]
+    pub(super) depth: Option<u32>,
+
     /// How pixels lie in memory, instead of the scene's way
     #[arg(long, value_enum)]
     pub(super) format: Option<PixelFormat>,
@@ -59,6 +68,10 @@ pub(super) struct SceneArguments {
         allow_negative_numbers = true
     )]
     pub(super) leaf: Option<u32>,
+
+    /// Use a grid of so many bits, instead of all that the kernel has
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32), allow_negative_numbers = true)]
+    pub(super) grid_bits: Option<u32>,
 
     /// Decimate the scene to so many triangles or fewer, before anything else
     #[arg(
@@ -205,8 +218,10 @@ impl SceneArguments {
 
     /// Reads a model for the reference, which has neither a tree to set nor knobs.
     pub(super) fn model_for_reference(&self) -> Result<Model, Failure> {
-        if self.leaf.is_some() || self.knobs.any() {
-            return Err(Failure::input("--leaf and the knobs of arithmetic are the kernels'; the reference has none"));
+        if self.leaf.is_some() || self.grid_bits.is_some() || self.knobs.any() {
+            return Err(Failure::input(
+                "--leaf, --grid-bits and the knobs of arithmetic are the kernels'; the reference has none",
+            ));
         }
         self.model()
     }
@@ -220,6 +235,9 @@ impl SceneArguments {
         }
         if let Some(samples) = self.samples {
             model.render.samples = samples;
+        }
+        if let Some(depth) = self.depth {
+            model.render.max_depth = depth;
         }
         if let Some(format) = self.format {
             model.render.format = format.into();
@@ -250,7 +268,15 @@ impl SceneArguments {
             .prepare(&model, &self.options())
             .map_err(|error| Failure::input(format!("{}: {error}", self.scene.display())))?;
         warn_of_degenerates(prepared.degenerates, model.triangles.len());
-        losses(engine.name(), engine.grid_bits(), engine.radius_min(), &model, &prepared.grid).iter().for_each(warn);
+        losses(
+            engine.name(),
+            self.grid_bits.unwrap_or(engine.grid_bits()),
+            engine.radius_min(),
+            &model,
+            &prepared.grid,
+        )
+        .iter()
+        .for_each(warn);
         Ok(Scene { engine, blob: prepared.blob, degenerates: Some(prepared.degenerates) })
     }
 
@@ -290,12 +316,14 @@ impl SceneArguments {
             || self.knobs.any()
             || self.size.is_some_and(|size| size != own)
             || self.samples.is_some()
+            || self.depth.is_some()
+            || self.grid_bits.is_some()
             || self.format.is_some()
         {
             return Err(Failure::input(format!(
-                "{path}: the blob is for {}x{} pixels, and its tree is built; --size, --samples, --format, --leaf, \
-                 --triangles, --texture-size, --texels and the knobs of its arithmetic need the scene that it was made \
-                 from",
+                "{path}: the blob is for {}x{} pixels, and its tree is built; --size, --samples, --depth, --format, \
+                 --leaf, --grid-bits, --triangles, --texture-size, --texels and the knobs of its arithmetic need the scene \
+                 that it was made from",
                 own[0], own[1]
             )));
         }
@@ -311,6 +339,7 @@ impl SceneArguments {
         Options {
             tree: self.leaf.map_or(tree, |leaf_max| TreeOptions { leaf_max, leaf_always: true, ..tree }),
             knobs: self.knobs.into(),
+            grid_bits: self.grid_bits,
             texels: self.textures.texels,
         }
     }

@@ -43,7 +43,7 @@ use materials::Names;
 use obj::Mesh;
 
 pub use error::{ImportError, Warning};
-pub use setting::MOST_SAMPLES;
+pub use setting::{GREATEST_DEPTH, MOST_SAMPLES};
 pub use source::{Embedded, Folder, Source};
 
 use crate::model::Model;

@@ -139,3 +139,14 @@ fn nothing_is_left_but_another_kernel_keeps_it() {
         );
     }
 }
+
+#[test]
+fn grids_that_the_kernel_has_not() {
+    let folder = folder(&obj(1, 0), WITHIN);
+    for (kernel, bits, most) in [("exact14", 16, 15), ("exact29", 30, 29), ("exact29", 7, 29), ("f32", 25, 24)] {
+        folder.refuses(
+            &format!("prep scene.toml --kernel {kernel} --grid-bits {bits} -o out.blob"),
+            &format!("error: scene.toml: a grid of {bits} bits; {kernel} has grids of 8 to {most}\n"),
+        );
+    }
+}
