@@ -79,6 +79,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.list {
         return cases.iter().try_for_each(|case| output::line(&format!("{:<24} {}", case.name, case.expectation)));
     }
+    if let Some(folder) = &arguments.output {
+        // What is in it already is left alone.
+        std::fs::create_dir_all(folder)
+            .map_err(|error| Failure::input(format!("{}: no folder can be made there: {error}", folder.display())))?;
+        [JSON, TEXT].iter().try_for_each(|file| files::check_writable(&folder.join(file)))?;
+    }
     let kernels: Vec<&'static dyn Engine> = ENGINES
         .into_iter()
         .filter(|e| arguments.kernels.is_empty() || arguments.kernels.iter().any(|k| k == e.name()))

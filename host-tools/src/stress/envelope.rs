@@ -5,7 +5,7 @@
 //! a colour is right if every channel is between the least and the greatest of those found, or off by no more than the
 //! shading may be. So a silhouette that moves by a hundredth of a pixel excuses the pixels that it crosses, and no others.
 
-use core_rt::kernel::Vertices;
+use core_rt::kernel::{NONE, Vertices};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -15,23 +15,40 @@ use crate::grid::Grid;
 use crate::model::{Model, Projection};
 use crate::picture::Picture;
 use crate::reference::{Hit, Reference, Sample, encode};
+use crate::witness::Seen;
 
-/// An image that may be this far off, in pixels, is promised no better: what moves farther is lost, and `prep` has to say so.
-const FARTHEST: f64 = 8.0;
+/// What the grid moves by more pixels than this is lost, and not excused: `prep` has to say so.
+const FARTHEST: f64 = 1.0;
+
+/// What is seen by way of other surfaces may turn by so many pixels at most.
+const FARTHEST_BENT: f64 = 8.0;
 
 /// The most gray levels that are excused for facets that turn on the grid, likewise.
 const MOST_LEVELS: f64 = 16.0;
 
 /// Samples on either side of a pixel's middle, coarse and fine.
-const SIDES: [i32; 3] = [1, 4, 16];
+const SIDES: [i32; 4] = [1, 4, 16, 64];
 
 /// What is wrong with a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Strays {
     /// Pixels that are not what the reference shows within the bound.
     pub pixels: u64,
-    /// Pixels with a channel at an end where the reference has none there within the bound.
+    /// Those of them that see nothing where the reference sees a surface everywhere within the bound.
+    pub holes: u64,
+    /// Those that see a surface that the reference sees within the bound, reached by other lights than there is anywhere:
+    /// the surface, or its neighbour, is in its own way, or lets through what it should not.
+    pub self_hits: u64,
+    /// Those with a channel at an end where the reference has none there within the bound.
     pub saturated: u64,
+}
+
+/// What the reference shows within a pixel's bound.
+struct Shown {
+    /// The least and the greatest of each channel, and what shading may be off by.
+    range: [DVec3; 2],
+    /// What its rays saw.
+    seen: Vec<Seen>,
 }
 
 /// The reference of a case, and what a kernel may do to it.
@@ -108,19 +125,33 @@ impl<'m> Envelope<'m> {
 
     /// The pixels of a picture that stray.
     #[must_use]
-    pub fn strays(&self, picture: &Picture) -> Strays {
+    pub fn strays(&self, picture: &Picture, seen: &[Seen]) -> Strays {
         let width = picture.width();
-        let all = picture.pixels().par_iter().enumerate().map(|(i, pixel)| {
+        let all = picture.pixels().par_iter().zip(seen).enumerate().map(|(i, (pixel, seen))| {
             let (x, y) = (i as u32 % width, i as u32 / width);
-            let Some(range) = self.stray(x, y, *pixel) else { return Strays::default() };
+            let Some(Shown { range, seen: shown }) = self.stray(x, y, *pixel) else { return Strays::default() };
             let ends = |c: usize| (pixel[c] == 255 && range[1][c] < 255.0) || (pixel[c] == 0 && range[0][c] > 0.0);
-            Strays { pixels: 1, saturated: u64::from((0..3).any(ends)) }
+            let is_hole = seen.first == NONE && shown.iter().all(|other| other.first != NONE);
+            let is_first = |other: &&Seen| other.first == seen.first && seen.first != NONE;
+            let mut same = shown.iter().filter(is_first).peekable();
+            let is_self_hit = same.peek().is_some() && same.all(|other| other.shadows != seen.shadows);
+            Strays {
+                pixels: 1,
+                holes: is_hole.into(),
+                self_hits: is_self_hit.into(),
+                saturated: (0..3).any(ends).into(),
+            }
         });
-        all.reduce(Strays::default, |a, b| Strays { pixels: a.pixels + b.pixels, saturated: a.saturated + b.saturated })
+        all.reduce(Strays::default, |a, b| Strays {
+            pixels: a.pixels + b.pixels,
+            holes: a.holes + b.holes,
+            self_hits: a.self_hits + b.self_hits,
+            saturated: a.saturated + b.saturated,
+        })
     }
 
-    /// What a pixel should have been, at least and at most, where it is neither.
-    fn stray(&self, x: u32, y: u32, pixel: [u8; 3]) -> Option<[DVec3; 2]> {
+    /// What a pixel should have been, where it is not.
+    fn stray(&self, x: u32, y: u32, pixel: [u8; 3]) -> Option<Shown> {
         let near = self.near(x, y);
         let turn = near.iter().filter_map(|hit| self.turns.get(hit.prim as usize)).fold(0.0, |a: f64, &b| a.max(b));
         let levels = self.levels + (255.0 * self.steepness * turn).min(MOST_LEVELS);
@@ -129,7 +160,7 @@ impl<'m> Envelope<'m> {
         let each = self.promise.turn + 2.0 * turn;
         let grazing = if self.grazes { (2.0 * each).sqrt() } else { 0.0 };
         let bent = (self.bends * each + grazing) * self.per_radian;
-        let radius = (self.moved / depth + self.turned + bent).min(FARTHEST);
+        let radius = (self.moved / depth + self.turned).min(FARTHEST) + bent.min(FARTHEST_BENT);
         let pixel = DVec3::from_array(pixel.map(f64::from));
         let mut range = [DVec3::INFINITY, DVec3::NEG_INFINITY];
         let mut take = |colour: DVec3| {
@@ -141,18 +172,21 @@ impl<'m> Envelope<'m> {
         if take(self.truth[(y * self.model.render.size[0] + x) as usize].colour) {
             return None;
         }
+        let mut seen = Vec::new();
         for side in SIDES {
             for (i, j) in (-side..=side).flat_map(|i| (-side..=side).map(move |j| (i, j))) {
                 let step = radius / f64::from(side);
                 let [dx, dy] = [i, j].map(|k| 0.5 + step * f64::from(k));
                 let (origin, direction) =
                     self.reference.camera_ray(self.model.render.size, f64::from(x) + dx, f64::from(y) + dy);
-                if take(self.reference.sample(origin, direction).colour) {
+                let (sample, witness) = self.reference.sample_seen(origin, direction);
+                seen.push(witness);
+                if take(sample.colour) {
                     return None;
                 }
             }
         }
-        Some(range)
+        Some(Shown { range, seen })
     }
 
     /// What is seen of a pixel and its neighbours.

@@ -111,15 +111,20 @@ fn one(case: &Case, subject: &Subject, reference: &Reference<'_>, truth: &[Sampl
     };
     let warnings = losses(engine.name(), engine.grid_bits(), engine.radius_min(), model, &prepared.grid);
     let warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
-    let rendered = match engine.render(prepared.blob.bytes(), TILE, &|_| {}) {
-        Ok(rendered) => rendered,
+    let (rendered, seen) = match engine.witness(prepared.blob.bytes(), TILE, &|_| {}) {
+        Ok(witnessed) => witnessed,
         Err(error) => return blank(Outcome::Fail, format!("its own blob is refused: {error}")),
     };
     let promise = Promise::of(engine.name());
     let envelope = Envelope::new(case, model, reference, truth, promise, &prepared.grid);
-    let Strays { pixels, saturated } = envelope.strays(&rendered.picture);
+    let Strays { pixels, holes, self_hits, saturated } = envelope.strays(&rendered.picture, &seen);
+    // A direction is off by sqrt(3)/2 of a unit of which it has at least 2^(bits - 1), along sqrt(3) sides of the grid.
+    let finer = engine.grid_bits() as i32 - promise.direction_bits as i32;
+    let turned = libm::ldexp(3.0, finer) / prepared.grid.scale;
     let of_rays = match engine.tracer(prepared.blob.bytes()) {
-        Ok(tracer) => rays::stray(&subject.rays, tracer.as_ref(), reference, &promise, &prepared.grid, extent(model)),
+        Ok(tracer) => {
+            rays::stray(&subject.rays, tracer.as_ref(), reference, &promise, &prepared.grid, [extent(model), turned])
+        }
         Err(error) => return blank(Outcome::Fail, format!("its own blob cannot be traced: {error}")),
     };
     let judged = if promise.edges { of_rays.rays } else { 0 };
@@ -154,8 +159,8 @@ fn one(case: &Case, subject: &Subject, reference: &Reference<'_>, truth: &[Sampl
         figures: Some(Figures {
             over_4: over(4),
             over_64: over(64),
-            holes: of_rays.holes,
-            self_hits: 0,
+            holes: holes + of_rays.holes,
+            self_hits,
             saturated,
             image_crc32: format!("{:08x}", rendered.picture.crc32()),
         }),

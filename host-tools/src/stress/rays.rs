@@ -21,23 +21,23 @@ pub(super) struct StrayRays {
     pub(super) holes: u64,
 }
 
-/// The rays of a case whose hits stray, in a scene of an extent.
+/// The rays of a case whose hits stray, in a scene of an extent, where directions that are rounded move a ray by as much as
+/// `turned` across the grid; scene units.
 pub(super) fn stray(
     rays: &[[DVec3; 2]],
     tracer: &dyn Trace,
     reference: &Reference<'_>,
     promise: &Promise,
     grid: &Grid,
-    extent: f64,
+    [extent, turned]: [f64; 2],
 ) -> StrayRays {
     let all = rays.par_iter().map(|&[origin, direction]| {
         let found = tracer.nearest(origin, direction);
         let expected = reference.nearest(origin, direction);
         // Its far end: behind the hits, and across the scene where it starts on one.
         let far = [expected, found].into_iter().flatten().map(|hit| hit.t).fold(extent / direction.length(), f64::max);
-        // Both ends of the ray, and the triangles' corners; and the direction's last place.
+        // Both ends of the ray, and the triangles' corners.
         let off = (promise.seen + 1.0) / grid.scale;
-        let turn = direction.length() * far * 2.0 / libm::exp2(f64::from(promise.direction_bits));
         let mut depths = [f64::INFINITY, f64::NEG_INFINITY];
         let mut is_hole = found.is_none();
         let mut random = Steps(1);
@@ -45,7 +45,7 @@ pub(super) fn stray(
             let moved = |by: f64, random: &mut Steps| DVec3::new(random.next(), random.next(), random.next()) * by;
             let (start, end) = match beside {
                 0 => (origin, origin + direction * far),
-                _ => (origin + moved(off, &mut random), origin + direction * far + moved(off + turn, &mut random)),
+                _ => (origin + moved(off, &mut random), origin + direction * far + moved(off + turned, &mut random)),
             };
             let hit = reference.nearest(start, (end - start) / far);
             is_hole &= hit.is_some();
@@ -54,7 +54,7 @@ pub(super) fn stray(
                 (Some(found), Some(hit)) if same_or_tied(&found, &hit, reference, start, (end - start) / far) => {
                     depths = [depths[0].min(hit.t), depths[1].max(hit.t)];
                     // Along the ray a point is off by as much again, and by f64's own roundings.
-                    let slack = off / direction.length() + turn / direction.length() + 1e-12 * far.abs();
+                    let slack = off / direction.length() + turned / direction.length() + 1e-12 * far.abs();
                     if (depths[0] - slack..=depths[1] + slack).contains(&found.t) {
                         return StrayRays::default();
                     }

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use super::Group;
 use super::row::{Outcome, Row};
+use super::{Case, Group};
 use crate::report::row::Machine;
 
 /// A machine as it is called on the command line and in the JSON.
@@ -79,4 +79,49 @@ fn line(row: &Row) -> String {
         number(|f| f.saturated),
         row.reason,
     )
+}
+
+/// The cases of a group in Markdown: a line a case with what is expected and what each kernel makes of it, and under the
+/// table why, where that is not simply a pass. `rows` are the host's.
+///
+/// Lines of cases that have no rows are left out.
+#[must_use]
+pub fn markdown(cases: &[Case], kernels: &[&str], rows: &[Row]) -> Vec<(Group, String, String)> {
+    let of = |name: &str| -> Vec<&Row> { rows.iter().filter(|row| row.name == name).collect() };
+    let drawn = cases.iter().map(|case| (case, of(case.name))).filter(|(_, rows)| !rows.is_empty());
+    drawn.map(|(case, rows)| (case.group, case_line(case, kernels, &rows), reasons(case, &rows))).collect()
+}
+
+/// A line of the table.
+fn case_line(case: &Case, kernels: &[&str], rows: &[&Row]) -> String {
+    let cell = |kernel: &&str| match rows.iter().find(|row| row.kernel == *kernel) {
+        None => String::from("-"),
+        Some(row) => match row.measured {
+            None => row.outcome.name().into(),
+            Some(measured) => format!("{} {measured}/{}", row.outcome.name(), row.bound),
+        },
+    };
+    let cells: Vec<String> = kernels.iter().map(cell).collect();
+    let grids = if case.part_grids { " \\*" } else { "" };
+    format!("| `{}`{grids} | {} | {} |\n", case.name, case.expectation, cells.join(" | "))
+}
+
+/// Why, with the kernels of which the same is said together.
+fn reasons(case: &Case, rows: &[&Row]) -> String {
+    // What differs in nothing but the kernel's name is the same.
+    let general = |row: &Row| row.reason.replace(row.kernel, "the kernel");
+    let mut said: Vec<(String, Vec<&Row>)> = Vec::new();
+    for row in rows.iter().filter(|row| !row.reason.is_empty()) {
+        match said.iter_mut().find(|(reason, _)| *reason == general(row)) {
+            Some((_, rows)) => rows.push(row),
+            None => said.push((general(row), vec![row])),
+        }
+    }
+    let mut text = String::new();
+    for (reason, rows) in said {
+        let kernels: Vec<String> = rows.iter().map(|row| format!("`{}`", row.kernel)).collect();
+        // A string takes whatever there is.
+        let _ = writeln!(text, "- `{}`, {}: {reason}.", case.name, kernels.join(", "));
+    }
+    text
 }

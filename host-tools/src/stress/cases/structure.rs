@@ -43,7 +43,7 @@ fn none_visible() -> Subject {
 fn deepest() -> Subject {
     let mut scene = front();
     for i in 0..84 {
-        let size = libm::pow(0.75, f64::from(i));
+        let size = libm::pow(0.5, f64::from(i / 3));
         let (along, side) = (size, size * 0.2);
         let corner = match i % 3 {
             0 => v(along, 0.0, 0.0),
