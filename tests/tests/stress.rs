@@ -145,7 +145,7 @@ fn a_wrong_picture_is_seen() {
     let found = strays(&other);
     assert!(found.self_hits > 20, "{found:?}");
     // Too bright.
-    let mut other = model;
+    let mut other = model.clone();
     other.lights[0].radiance *= 4.0;
     let found = strays(&other);
     assert!(found.saturated > 20, "{found:?}");

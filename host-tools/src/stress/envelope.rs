@@ -27,7 +27,7 @@ const FARTHEST_BENT: f64 = 8.0;
 const MOST_LEVELS: f64 = 16.0;
 
 /// Samples on either side of a pixel's middle, coarse and fine.
-const SIDES: [i32; 4] = [1, 4, 16, 64];
+const SIDES: [i32; 3] = [1, 4, 16];
 
 /// What is wrong with a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -69,6 +69,8 @@ pub struct Envelope<'m> {
     per_radian: f64,
     bends: f64,
     grazes: bool,
+    /// How many pixels are as close to a concave corner as where a ray leaves a surface is off.
+    in_corners: f64,
     /// By how many radians each triangle and sphere turns on the grid.
     turns: Vec<f64>,
 }
@@ -113,6 +115,7 @@ impl<'m> Envelope<'m> {
             per_radian: if largest > 0.0 { per_unit * largest } else { 0.0 },
             bends: case.bends,
             grazes: case.grazes,
+            in_corners: case.corners * promise.between / grid.scale * per_unit / mean_depth(truth),
             turns: turns(model, grid),
         }
     }
@@ -120,7 +123,7 @@ impl<'m> Envelope<'m> {
     /// How many pixels may stray.
     #[must_use]
     pub fn bound(&self) -> u64 {
-        (self.promise.strays * self.truth.len() as f64).ceil() as u64
+        (self.promise.strays * self.truth.len() as f64).ceil() as u64 + self.in_corners as u64
     }
 
     /// The pixels of a picture that stray.
@@ -209,6 +212,12 @@ impl<'m> Envelope<'m> {
             }
         }
     }
+}
+
+/// How far what is seen is away, in the mean over the pixels that see something; infinite where none does.
+fn mean_depth(truth: &[Sample]) -> f64 {
+    let depths: Vec<f64> = truth.iter().filter_map(|sample| Some(sample.hit?.t)).collect();
+    if depths.is_empty() { f64::INFINITY } else { depths.iter().sum::<f64>() / depths.len() as f64 }
 }
 
 /// By how many radians the normals of triangles, and of spheres after them, turn on a grid.

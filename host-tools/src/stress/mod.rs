@@ -74,6 +74,9 @@ pub struct Case {
     pub steepness: f64,
     /// How many rays that go on a pixel may drop because nobody would see them, a quarter of a gray level each.
     pub dropped: f64,
+    /// The length of the concave corners between mirrors and other surfaces, and of their images, pixels: a ray that leaves
+    /// a mirror closer to the other surface than its start is off may start behind it, and passes it.
+    pub corners: f64,
     /// The most triangles of a leaf; `None` where their cost decides.
     pub leaf: Option<u32>,
     /// Whether it is small enough for a chip.
@@ -112,6 +115,7 @@ impl Case {
             grazes: false,
             steepness: 1.0,
             dropped: 0.0,
+            corners: 0.0,
             leaf: None,
             chips: true,
             part_grids: false,

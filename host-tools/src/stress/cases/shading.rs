@@ -53,12 +53,14 @@ pub(super) fn cases() -> Vec<Case> {
                 ),
             )
         },
-        // Each of 64 mirrors turns the image, and is left from a little off it.
+        // Each of 64 mirrors turns the image, and is left from a little off it. The picture's 64 columns see the ground's edges
+        // along the mirrors and their images, each shorter than the one before: 64 (1 + 1/2 + ... + 1/64) pixels.
         bent(
             64.0,
             1.0,
             Case {
                 leverage: 64.0,
+                corners: 300.0,
                 ..case("hall-of-mirrors", "Two mirrors that face each other, 64 reflections deep", hall)
             },
         ),
