@@ -8,10 +8,12 @@ mod emulate;
 mod failure;
 mod input;
 mod inspect;
+mod load;
 mod output;
 mod prep;
 mod progress;
 mod render;
+mod report;
 mod run_elf;
 mod stress;
 mod trace;
@@ -41,6 +43,7 @@ enum Command {
     Compare(compare::Arguments),
     Emulate(emulate::Arguments),
     Stress(stress::Arguments),
+    Report(report::Arguments),
     #[command(hide = true)]
     RunElf(run_elf::Arguments),
 }
@@ -57,6 +60,7 @@ pub fn run() -> ExitCode {
         Some(Command::Compare(arguments)) => compare::run(&arguments),
         Some(Command::Emulate(arguments)) => emulate::run(&arguments),
         Some(Command::Stress(arguments)) => stress::run(&arguments),
+        Some(Command::Report(arguments)) => report::run(&arguments),
         Some(Command::RunElf(arguments)) => run_elf::run(&arguments),
     };
     match done {

@@ -2,6 +2,7 @@
 //! independent f64 reference.
 
 pub mod builtin;
+pub mod choose;
 pub mod cli;
 pub mod compare;
 pub mod decimate;

@@ -11,6 +11,9 @@ use crate::picture::Picture;
 use crate::pixels::rgb888;
 use crate::witness::{Seen, Witness};
 
+/// Tiles that threads take turns at. Small enough to share the work, large enough to be worth it.
+pub const TILE: [u16; 2] = [32, 32];
+
 /// A picture and the work that it took.
 #[derive(Clone, Debug)]
 pub struct Rendered {

@@ -65,6 +65,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::model::Model;
+use crate::picture::Picture;
 use crate::witness::Seen;
 use bvh::Bvh;
 use camera::View;
@@ -239,6 +240,13 @@ impl<'m> Reference<'m> {
             let colour = if is_one { centre.colour } else { self.pixel_colour(size, x, y) };
             (encode(colour, self.model.render.transfer), centre.hit)
         })
+    }
+
+    /// The picture in the scene's own size.
+    pub fn picture(&self, progress: &(dyn Fn(u64) + Sync)) -> Picture {
+        let [width, height] = self.model.render.size;
+        let (pixels, _) = self.render([width, height], progress);
+        Picture::from_fn(width, height, |x, y| pixels[(y * width + x) as usize])
     }
 
     /// The picture, and what the rays behind each pixel saw, in the same order.
