@@ -15,6 +15,7 @@ mod progress;
 mod render;
 mod report;
 mod run_elf;
+mod stress;
 mod trace;
 
 use std::process::ExitCode;
@@ -41,6 +42,7 @@ enum Command {
     Trace(trace::Arguments),
     Compare(compare::Arguments),
     Emulate(emulate::Arguments),
+    Stress(stress::Arguments),
     Report(report::Arguments),
     #[command(hide = true)]
     RunElf(run_elf::Arguments),
@@ -57,6 +59,7 @@ pub fn run() -> ExitCode {
         Some(Command::Trace(arguments)) => trace::run(&arguments),
         Some(Command::Compare(arguments)) => compare::run(&arguments),
         Some(Command::Emulate(arguments)) => emulate::run(&arguments),
+        Some(Command::Stress(arguments)) => stress::run(&arguments),
         Some(Command::Report(arguments)) => report::run(&arguments),
         Some(Command::RunElf(arguments)) => run_elf::run(&arguments),
     };

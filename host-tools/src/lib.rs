@@ -19,6 +19,7 @@ pub mod prepare;
 pub mod reference;
 pub mod render;
 pub mod report;
+pub mod stress;
 pub mod textures;
 pub mod trace;
 pub mod tree;

@@ -4,10 +4,12 @@
 
 mod camera;
 mod header;
+mod layers;
 mod layout;
 mod loss;
 mod lustre;
 mod paint;
+mod survey;
 
 pub use layout::Blob;
 pub use loss::{Keeper, Loss, losses};
@@ -275,7 +277,7 @@ fn with_area(snapped: &Snapped<'_>) -> (Vec<u32>, Degenerates) {
     let mut ids = Vec::new();
     for (id, corners) in (0..).zip(snapped.iter()) {
         let [a, b, c] = corners;
-        if loss::has_area(corners) {
+        if survey::has_area(corners) {
             ids.push(id);
         } else if a == b || b == c || c == a {
             degenerates.zero_edge += 1;

@@ -2,16 +2,9 @@
 
 use std::fmt;
 
-use core_rt::exact::{Exact20, Exact29};
-use core_rt::kernel::{Kernel, Vertices};
-use core_rt::num::{cross, sub};
-
+use super::survey::{MOST_LIGHT, Survey, few, finer, keeper, lost_boxes, too_strong};
 use crate::grid::Grid;
-use crate::model::{Model, Sphere};
-
-/// Of so many triangles one may collapse without a word. One that does is thinner than a step of the grid, and its neighbours
-/// close over it; where more do, they are neighbours, and shapes vanish.
-const ONE_OF: u32 = 100;
+use crate::model::Model;
 
 /// With fewer bits for the geometry a warning is due: a step of the grid is then more than a 4096th of the scene, which is a
 /// quarter of a pixel in a picture 1024 wide.
@@ -58,6 +51,43 @@ pub enum Loss {
         /// Who keeps more, and how many.
         keeper: Option<(&'static str, u32)>,
     },
+    /// Surfaces that are apart in the file and may change sides on the grid.
+    Layers {
+        /// How many triangles of how many.
+        share: [u32; 2],
+        /// The kernel.
+        kernel: &'static str,
+        /// Who keeps more apart, and how many it would not.
+        keeper: Option<(&'static str, u32)>,
+    },
+    /// Flat triangles that are so small that they face another way on the grid.
+    Turned {
+        /// How many of how many.
+        share: [u32; 2],
+        /// The kernel.
+        kernel: &'static str,
+        /// Who turns fewer, and how many.
+        keeper: Option<(&'static str, u32)>,
+    },
+    /// The camera or a light is so close to a surface that it may be on its other side.
+    Near {
+        /// The kernel.
+        kernel: &'static str,
+        /// Who keeps it on its side.
+        keeper: Option<&'static str>,
+    },
+    /// Triangles whose boxes are smaller than what the box test of a kernel of the 2009 report tells apart: it loses them.
+    Boxes {
+        /// How many of how many.
+        share: [u32; 2],
+        /// The kernel.
+        kernel: &'static str,
+    },
+    /// Inverse-square lights that are stronger than what a blob holds. Others would be white all the same.
+    Strength {
+        /// How many lights.
+        count: u32,
+    },
 }
 
 impl fmt::Display for Loss {
@@ -89,6 +119,37 @@ impl fmt::Display for Loss {
                 }
                 write!(f, "bring it closer, or make the light directional")
             }
+            Self::Layers { share: [lost, all], kernel, keeper } => {
+                write!(
+                    f,
+                    "{lost} of {all} triangles are so close to another surface that the grid of {kernel} may put them on its \
+                     other side"
+                )?;
+                write_keeper(f, *keeper)
+            }
+            Self::Turned { share: [lost, all], kernel, keeper } => {
+                write!(f, "{lost} of {all} triangles are so small that they face another way on the grid of {kernel}")?;
+                write_keeper(f, *keeper)
+            }
+            Self::Near { kernel, keeper } => {
+                write!(
+                    f,
+                    "the camera or a light is so close to a surface that the grid of {kernel} may put it on the other side"
+                )?;
+                match keeper {
+                    Some(keeper) => write!(f, "; {keeper} does not"),
+                    None => write!(f, "; move it away"),
+                }
+            }
+            Self::Boxes { share: [lost, all], kernel } => write!(
+                f,
+                "the boxes of {lost} of {all} triangles are smaller than what the box test of {kernel} tells apart, so that \
+                 rays pass them; hanika-cons loses none"
+            ),
+            Self::Strength { count } => write!(
+                f,
+                "inverse-square lights of over {MOST_LIGHT} are drawn with that: {count}; make their reach longer instead"
+            ),
         }
     }
 }
@@ -99,93 +160,6 @@ fn write_keeper(f: &mut fmt::Formatter<'_>, keeper: Option<(&'static str, u32)>)
         Some((keeper, lost)) => write!(f, "; {keeper} keeps all but {lost}"),
         None => write!(f, ", and no kernel keeps more; make what is large smaller, or leave it out"),
     }
-}
-
-/// What a kernel's grid makes of a model.
-struct Survey {
-    kernel: &'static str,
-    /// Triangles that have an area in the model.
-    triangles: u32,
-    /// Those of them that have none on the grid.
-    lost: u32,
-    /// Spheres.
-    spheres: u32,
-    /// Those of them that are too small for the grid.
-    lost_spheres: u32,
-    /// Materials, by number, of which nothing is left.
-    materials: Vec<usize>,
-    /// Bits of the geometry.
-    bits: u32,
-}
-
-impl Survey {
-    fn of(kernel: &'static str, radius_min: i32, model: &Model, grid: &Grid) -> Self {
-        let is_kept = |sphere: &&Sphere| grid.ball(sphere).radius >= radius_min;
-        let mut of_spheres = vec![false; model.materials.len()];
-        for sphere in model.spheres.iter().filter(is_kept) {
-            of_spheres[sphere.material as usize] = true;
-        }
-        let spheres = model.spheres.len() as u32;
-        let mut counts = vec![[0u32; 2]; model.materials.len()];
-        for (triangle, corners) in model.triangles.iter().zip(grid.snap(model).iter()) {
-            let [a, b, c] = triangle.vertices.map(|v| model.positions[v as usize]);
-            if (b - a).cross(c - a) != glam::DVec3::ZERO {
-                let [all, lost] = &mut counts[triangle.material as usize];
-                *all += 1;
-                *lost += u32::from(!has_area(corners));
-            }
-        }
-        Self {
-            kernel,
-            triangles: counts.iter().map(|[all, _]| all).sum(),
-            lost: counts.iter().map(|[_, lost]| lost).sum(),
-            spheres,
-            lost_spheres: spheres - model.spheres.iter().filter(is_kept).count() as u32,
-            materials: (0..)
-                .zip(&counts)
-                .filter(|&(i, [all, lost])| *all > 0 && all == lost && !of_spheres[i])
-                .map(|(i, _)| i)
-                .collect(),
-            bits: grid.bits(model),
-        }
-    }
-
-    /// The same on the kernel's own grid; `None` where it has none for the model.
-    fn on_grid_of<K: Kernel>(model: &Model) -> Option<Self> {
-        Some(Self::of(K::NAME, K::RADIUS_MIN, model, &Grid::fit::<K>(model).ok()?))
-    }
-
-    fn loses_shapes(&self) -> bool {
-        !self.materials.is_empty() || u64::from(self.lost) * u64::from(ONE_OF) > u64::from(self.triangles)
-    }
-}
-
-/// Whether a triangle on a grid has an area.
-pub(super) fn has_area(corners: Vertices) -> bool {
-    let [a, b, c] = corners.map(|v| v.map(i64::from));
-    cross(sub(b, a), sub(c, a)) != [0; 3]
-}
-
-/// What kernels with finer grids than one of so many bits make of a model, the coarsest first.
-fn finer(grid_bits: u32, model: &Model) -> impl Iterator<Item = Survey> {
-    // One after the other, as far as they are asked for.
-    let of_20 =
-        (Exact20::GRID_BITS > grid_bits).then_some(Survey::on_grid_of::<Exact20> as fn(&Model) -> Option<Survey>);
-    let of_29 =
-        (Exact29::GRID_BITS > grid_bits).then_some(Survey::on_grid_of::<Exact29> as fn(&Model) -> Option<Survey>);
-    [of_20, of_29].into_iter().flatten().filter_map(|survey| survey(model))
-}
-
-/// The first that is good enough, else the last; where that is better than none at all.
-fn keeper(surveys: impl Iterator<Item = Survey>, enough: impl Fn(&Survey) -> bool) -> Option<Survey> {
-    let mut last = None;
-    for survey in surveys {
-        if enough(&survey) {
-            return Some(survey);
-        }
-        last = Some(survey);
-    }
-    last
 }
 
 /// What of a model is lost on the grid that a kernel of this name, with so many bits for coordinates and no smaller radii,
@@ -219,6 +193,38 @@ pub fn losses(kernel: &'static str, grid_bits: u32, radius_min: i32, model: &Mod
             kernel,
             keeper: keeper.map(|survey| (survey.kernel, survey.lost_spheres)),
         });
+    }
+    // Where shapes are lost already, what becomes of the rest is no news.
+    let told = !losses.is_empty();
+    if !told && own.merges_layers() {
+        let keeper = keeper(finer(grid_bits, model), |survey| !survey.merges_layers());
+        losses.push(Loss::Layers {
+            share: [own.layers, own.triangles],
+            kernel,
+            keeper: keeper.filter(|survey| survey.layers < own.layers).map(|survey| (survey.kernel, survey.layers)),
+        });
+    }
+    if !told && own.turns_shapes() {
+        let keeper = keeper(finer(grid_bits, model), |survey| !survey.turns_shapes() && !survey.loses_shapes());
+        let [turned, all] = own.turned;
+        let keeper = keeper.filter(|survey| survey.turned[0] < turned);
+        losses.push(Loss::Turned {
+            share: [turned, all],
+            kernel,
+            keeper: keeper.map(|survey| (survey.kernel, survey.turned[0])),
+        });
+    }
+    if !told && own.is_near {
+        let keeper = keeper(finer(grid_bits, model), |survey| !survey.is_near);
+        losses.push(Loss::Near { kernel, keeper: keeper.filter(|survey| !survey.is_near).map(|survey| survey.kernel) });
+    }
+    let boxes = lost_boxes(kernel, &grid.snap(model));
+    if !few(boxes, own.triangles) {
+        losses.push(Loss::Boxes { share: [boxes, own.triangles], kernel });
+    }
+    match too_strong(model) {
+        0 => {}
+        count => losses.push(Loss::Strength { count }),
     }
     losses
 }

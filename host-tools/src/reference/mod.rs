@@ -197,6 +197,12 @@ impl<'m> Reference<'m> {
         self.sample_witness(origin, direction, 0, &mut Seen::default())
     }
 
+    /// What a ray sees, and what the rays behind it saw.
+    pub fn sample_seen(&self, origin: DVec3, direction: DVec3) -> (Sample, Seen) {
+        let mut seen = Seen::default();
+        (self.sample_witness(origin, direction, 0, &mut seen), seen)
+    }
+
     /// What the camera ray of a pixel's sample sees, by the sample's number.
     fn sample_witness(&self, origin: DVec3, direction: DVec3, number: u32, seen: &mut Seen) -> Sample {
         let ray = Ray::new(origin, direction);

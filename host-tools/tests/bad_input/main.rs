@@ -5,6 +5,7 @@
 
 mod arguments;
 mod blobs;
+mod closeness;
 mod command;
 mod decimation;
 mod good;
