@@ -35,8 +35,21 @@ impl Tile {
 
     /// Column and row in the picture of each pixel, row by row.
     pub fn places(&self) -> impl Iterator<Item = [u16; 2]> + Clone {
-        let columns = self.x..self.x.saturating_add(self.width);
-        (self.y..self.y.saturating_add(self.height)).flat_map(move |y| columns.clone().map(move |x| [x, y]))
+        let (left, right) = (self.x, self.x.saturating_add(self.width));
+        let bottom = if left < right { self.y.saturating_add(self.height) } else { 0 };
+        // Two counters: a nested iterator would keep four, and ask more.
+        let (mut x, mut y) = (left, self.y);
+        core::iter::from_fn(move || {
+            let place = [x, y];
+            if y >= bottom {
+                return None;
+            }
+            x += 1;
+            if x == right {
+                (x, y) = (left, y + 1);
+            }
+            Some(place)
+        })
     }
 
     /// The tiles of a picture, row by row; those at the right and at the bottom are cut to fit. None where a size is 0.

@@ -5,6 +5,7 @@ use core::fmt::Debug;
 use core::ops::{Add, Neg, Shr, Sub};
 
 use super::boxes::BoxNode;
+use super::slopes::Slopes;
 use crate::kernel::Surface;
 use crate::num::{Triple, Word};
 use crate::record::Record;
@@ -42,9 +43,11 @@ wide!(i64);
 wide!(i128);
 
 /// The reciprocal of a direction's component, of its sign, and never above the true one in magnitude.
-pub trait Reciprocal: Copy + Debug {
+pub trait Reciprocal: Copy + Debug + Send + Sync {
     /// The word of grid differences.
     type Word: Word;
+    /// By how much a product may be low; see [`Width::SLACK`].
+    const SLACK: Self::Word;
     /// From a component; 0 stands for "does not move along this axis".
     fn new(component: Self::Word) -> Self;
     /// `delta / component` in the unit of [`Width::SLACK`], rounded down; not above the true value where that is not
@@ -53,6 +56,9 @@ pub trait Reciprocal: Copy + Debug {
     /// [`Width::SLACK`].
     fn along(self, delta: Self::Word) -> Self::Word;
 }
+
+/// The word of distances to boxes.
+pub type Distance<W> = <<W as Width>::Slopes as Slopes>::Distance;
 
 /// The widths of an exact kernel.
 ///
@@ -95,8 +101,8 @@ pub trait Width: Copy + Debug + Default + Send + Sync + 'static {
     type Short: Record + Into<Self::Word> + TryFrom<i64> + Default;
     /// The record of a node.
     type Node: BoxNode<Plane: Into<Self::Word>>;
-    /// See [`Reciprocal`].
-    type Reciprocal: Reciprocal<Word = Self::Word>;
+    /// What the box test keeps of a ray.
+    type Slopes: Slopes<Word = Self::Word>;
 
     /// The exact `a . b`, for `a` an edge, an origin's offset or a direction and `b` a cross product of two of these.
     fn dot(a: Triple<Self::Word>, b: Triple<Self::Word>) -> Self::Wide;

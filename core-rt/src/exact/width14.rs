@@ -20,9 +20,10 @@
 use core::cmp::Ordering;
 
 use super::boxes::BoxNode14;
-use super::width::{Reciprocal, Width};
+use super::slopes::Slopes14;
+use super::width::Width;
 use crate::kernel::Surface;
-use crate::num::{Triple, isqrt_u64, reciprocal, round_shift};
+use crate::num::{BitLength, Triple, isqrt_u64, reciprocal, round_shift};
 use crate::space::grid14::{POINT_BITS, normalise};
 use crate::space::{Grid14, Space};
 
@@ -37,35 +38,6 @@ pub struct Width14;
 /// Along the normal that is at most sqrt(3) (9/32 + 1/2 + 2^-11) < 1.36 < 3/2 (1 - 2^-11): the origin is on the normal's
 /// side of the plane, and a ray that leaves to that side does not meet it.
 const STAND_OFF_2X: i32 = 3;
-
-/// mantissa, shift: `delta * mantissa >> shift` is t in Q13.
-#[derive(Clone, Copy, Debug)]
-pub struct Reciprocal14 {
-    mantissa: i32,
-    shift: u32,
-}
-
-impl Reciprocal for Reciprocal14 {
-    type Word = i32;
-
-    #[inline]
-    fn new(component: i32) -> Self {
-        if component == 0 {
-            // delta >= 1 becomes 2^16 - 1, which no t in Q13 exceeds by more than SLACK.
-            return Self { mantissa: 0xffff, shift: 0 };
-        }
-        // mantissa / 2^(16 + log2 d) * 2^13
-        let r = reciprocal(component.unsigned_abs());
-        let mantissa = r.mantissa as i32;
-        Self { mantissa: if component < 0 { -mantissa } else { mantissa }, shift: r.log2_d + 3 }
-    }
-
-    /// |delta| <= 2^15 and |mantissa| < 2^16: the product is below 2^31.
-    #[inline(always)]
-    fn along(self, delta: i32) -> i32 {
-        (delta * self.mantissa) >> self.shift
-    }
-}
 
 impl Width for Width14 {
     const ID: u16 = 14;
@@ -88,7 +60,7 @@ impl Width for Width14 {
     type Wide = i64;
     type Short = i16;
     type Node = BoxNode14;
-    type Reciprocal = Reciprocal14;
+    type Slopes = Slopes14;
 
     /// By 15-bit limbs of b, so that a Cortex-M0 needs `muls` alone. For |a| < 2^15 and |b| <= 2^30 a limb's product is at
     /// most 2^15 (2^15 - 1), and two of them fit; the third is added in 64 bits.
@@ -230,7 +202,7 @@ fn quotient_q16(numerator: i64, denominator: i64) -> i32 {
 /// The number of bits of a positive value.
 #[inline]
 fn bits_of(value: i64) -> u32 {
-    i64::BITS - value.leading_zeros()
+    value.cast_unsigned().bit_length()
 }
 
 /// `value * 2^(to - from)`, rounded down: of a value with `from` bits, the leading `to`.

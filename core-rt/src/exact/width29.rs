@@ -19,6 +19,7 @@
 use core::cmp::Ordering;
 
 use super::boxes::BoxNode29;
+use super::slopes::PerAxis;
 use super::width::{Reciprocal, Width};
 use crate::kernel::Surface;
 use crate::num::{Triple, round_shift};
@@ -41,6 +42,7 @@ pub struct Reciprocal29(i64);
 
 impl Reciprocal for Reciprocal29 {
     type Word = i64;
+    const SLACK: i64 = Width29::SLACK;
 
     #[inline]
     fn new(component: i64) -> Self {
@@ -78,7 +80,7 @@ impl Width for Width29 {
     type Wide = i128;
     type Short = i32;
     type Node = BoxNode29;
-    type Reciprocal = Reciprocal29;
+    type Slopes = PerAxis<Reciprocal29>;
 
     #[inline]
     fn dot(a: Triple<i64>, b: Triple<i64>) -> i128 {

@@ -4,12 +4,14 @@
 //! and every plain operator is expected not to overflow: builds with overflow checks trap where an
 //! argument is wrong. Where wrapping is meant, the operation says so.
 
+mod length;
 mod power;
 mod recip;
 mod rsqrt;
 
+pub use length::{BitLength, byte_length};
 pub use power::power;
-pub use recip::{RECIPROCAL_ERROR_BITS, Reciprocal16, reciprocal};
+pub use recip::{RECIPROCAL_ERROR_BITS, Reciprocal16, mantissa, reciprocal};
 pub use rsqrt::{inverse_sqrt_u32, inverse_sqrt_u64, isqrt_u64, sqrt_u32, sqrt_u64};
 
 use core::fmt::Debug;
@@ -74,7 +76,7 @@ macro_rules! word {
             }
             #[inline(always)]
             fn magnitude_bits(self) -> u32 {
-                Self::BITS - self.unsigned_abs().leading_zeros()
+                self.unsigned_abs().bit_length()
             }
         }
     };

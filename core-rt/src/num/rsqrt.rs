@@ -4,7 +4,7 @@
 //! Normalising a vector is one of these and three products; with a square root and three divisions it is
 //! slower on a Cortex-M0 than soft float.
 
-use super::reciprocal;
+use super::{BitLength, reciprocal};
 
 /// The table is indexed by the 7 leading bits of x in [2^30, 2^32): 32 to 127.
 const TABLE: [u16; 96] = {
@@ -67,7 +67,7 @@ pub fn sqrt_u32(x: u32) -> u32 {
     if x == 0 {
         return 0;
     }
-    let half_shift = x.leading_zeros() / 2;
+    let half_shift = (u32::BITS - x.bit_length()) / 2;
     let normal = x << (2 * half_shift);
     // sqrt = x / sqrt(x): below 2^16 2^16, and where x is largest its inverse is half of that.
     (((normal >> 16) * inverse_sqrt_u32(normal)) >> 15) >> half_shift
@@ -79,7 +79,7 @@ pub fn sqrt_u64(x: u64) -> u64 {
     if x == 0 {
         return 0;
     }
-    let half_shift = x.leading_zeros() / 2;
+    let half_shift = (u64::BITS - x.bit_length()) / 2;
     let normal = x << (2 * half_shift);
     (((normal >> 32) * inverse_sqrt_u64(normal)) >> 31) >> half_shift
 }
