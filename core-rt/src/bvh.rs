@@ -233,16 +233,21 @@ impl<'a, P: Profile> Bvh<'a, P> {
             let node = self.nodes.get(index as usize)?;
             stats.boxes(2);
             let [first, second] = P::Kernel::children(node);
-            child = match P::Kernel::enter::<OCTANT>(path, node, limit) {
-                [Some(a), Some(b)] => {
+            // The second test stands here twice: the code knows of the first what it found, and keeps no flag.
+            let enter = |child| P::Kernel::enter::<OCTANT>(path, node, child, limit);
+            child = if let Some(a) = enter(0) {
+                if let Some(b) = enter(1) {
                     let (near, far) = if b < a { (second, (first, a)) } else { (first, (second, b)) };
                     // A checked tree is no deeper than the stack.
                     let _ = stack.push(far);
                     near
+                } else {
+                    first
                 }
-                [Some(_), None] => first,
-                [None, Some(_)] => second,
-                [None, None] => waiting::<P::Kernel>(stack, limit)?,
+            } else if enter(1).is_some() {
+                second
+            } else {
+                waiting::<P::Kernel>(stack, limit)?
             };
         }
     }

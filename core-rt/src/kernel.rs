@@ -191,14 +191,15 @@ pub trait Kernel: Copy + Debug + Default + Send + Sync + 'static {
     fn octant(path: &Self::Path) -> usize;
     /// The limit beyond which nothing counts.
     fn reach(ray: &Self::Ray, path: &Self::Path) -> Self::Distance;
-    /// Where a ray of an octant (or [`ANY_OCTANT`]) enters each child of a node, if it does before `limit`. Conservative: a child that holds a
+    /// Where a ray of an octant (or [`ANY_OCTANT`]) enters a child of a node, 0 or 1, if it does before `limit`. Conservative: a child that holds a
     /// triangle whose hit is not beyond `limit` is never left out, but for `hanika-c` and `hanika-cd`, which reproduce a
     /// test that does. The octant is a constant, so that near and far planes are chosen when the code is compiled.
     fn enter<const OCTANT: usize>(
         path: &Self::Path,
         node: &Self::Node,
+        child: usize,
         limit: Self::Distance,
-    ) -> [Option<Self::Distance>; 2];
+    ) -> Option<Self::Distance>;
     /// Where a ray hits a triangle, if it does within its reach. Edges belong to both neighbours.
     fn intersect(ray: &Self::Ray, triangle: &Self::Triangle) -> Option<Self::Depth>;
     /// Where a ray hits a sphere, if it does within its reach; a tangent does. `leaves` says that the ray starts on it, off it

@@ -38,11 +38,15 @@ pub(crate) fn limit<F: Real>(t: F) -> F {
     t * padding()
 }
 
-/// Where the ray enters each child, if it does before the limit.
+/// Where a ray enters a child, if it does before the limit.
 #[inline(always)]
-pub(crate) fn enter<F: Format, const OCTANT: usize>(path: &Path<F>, node: &F::Node, limit: F) -> [Option<F>; 2] {
-    let [first, second] = node.planes();
-    [slab::<_, OCTANT>(path, first, limit), slab::<_, OCTANT>(path, second, limit)]
+pub(crate) fn enter<F: Format, const OCTANT: usize>(
+    path: &Path<F>,
+    node: &F::Node,
+    child: usize,
+    limit: F,
+) -> Option<F> {
+    slab::<_, OCTANT>(path, &node.planes()[child], limit)
 }
 
 /// Whether floats are routines. Leaving a box as soon as an axis decides is what makes them bearable; an FPU is quicker
@@ -79,7 +83,7 @@ mod tests {
     fn hit(origin: Triple<f32>, direction: Triple<f32>, limit: f32) -> Option<f32> {
         let ray = Ray::new(origin, direction, f32::INFINITY, NONE).unwrap();
         let node = pack::<f32>([UNIT; 2], [0; 2]);
-        let [first, second] = enter::<_, ANY_OCTANT>(&ray.path(), &node, limit);
+        let [first, second] = [0, 1].map(|child| enter::<_, ANY_OCTANT>(&ray.path(), &node, child, limit));
         assert_eq!(first, second);
         first
     }
@@ -125,10 +129,10 @@ mod tests {
             let origin = [0, 1, 2].map(|axis: usize| (point[axis] - steps * direction[axis]) as f32);
             let Some(ray) = Ray::new(origin, direction.map(|c| c as f32), f32::INFINITY, NONE) else { continue };
             let node = pack::<f32>([Bounds { low: point, high: point }; 2], [0; 2]);
-            assert!(enter::<_, ANY_OCTANT>(&ray.path(), &node, f32::INFINITY)[0].is_some(), "{point:?} {direction:?} {steps}");
             let path = ray.path();
+            assert!(enter::<_, ANY_OCTANT>(&path, &node, 0, f32::INFINITY).is_some(), "{point:?} {direction:?} {steps}");
             let bare = Path { leaving: path.entering, ..path };
-            unpadded += u32::from(enter::<_, ANY_OCTANT>(&bare, &node, f32::INFINITY)[0].is_none());
+            unpadded += u32::from(enter::<_, ANY_OCTANT>(&bare, &node, 0, f32::INFINITY).is_none());
         }
         assert!(unpadded > 1000, "without padding only {unpadded} were lost: the test has no teeth");
     }

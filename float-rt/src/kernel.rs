@@ -139,8 +139,8 @@ impl<F: Format> Kernel for Float<F> {
     }
 
     #[inline(always)]
-    fn enter<const OCTANT: usize>(path: &Path<F>, node: &F::Node, limit: F) -> [Option<F>; 2] {
-        boxes::enter::<_, OCTANT>(path, node, limit)
+    fn enter<const OCTANT: usize>(path: &Path<F>, node: &F::Node, child: usize, limit: F) -> Option<F> {
+        boxes::enter::<_, OCTANT>(path, node, child, limit)
     }
 
     #[inline(always)]

@@ -86,17 +86,17 @@ pub(super) fn unpack<W: Width>(node: &W::Node) -> [Bounds; 2] {
     })
 }
 
-/// Where a ray enters each child, if it does before the limit.
+/// Where a ray enters a child, if it does before the limit.
 #[inline(always)]
 pub(super) fn enter<W: Width, const OCTANT: usize>(
     slopes: &W::Slopes,
     node: &W::Node,
+    child: usize,
     limit: Distance<W>,
-) -> [Option<Distance<W>>; 2] {
-    node.planes().each_ref().map(|[low, high]| {
-        let crossed = |axis: usize| slopes.crossed::<OCTANT>(axis, low[axis].into(), high[axis].into());
-        slab(limit, slopes.slack::<OCTANT>(), crossed)
-    })
+) -> Option<Distance<W>> {
+    let [low, high] = &node.planes()[child];
+    let crossed = |axis: usize| slopes.crossed::<OCTANT>(axis, low[axis].into(), high[axis].into());
+    slab(limit, slopes.slack::<OCTANT>(), crossed)
 }
 
 /// Whether a box is left as soon as two axes decide. What predicts branches and runs ahead is quicker without.
@@ -112,7 +112,7 @@ pub(crate) fn slab<T: Word>(limit: T, slack: T, crossed: impl Fn(usize) -> (T, T
         return None;
     }
     let (z_near, z_far) = crossed(2);
-    // No limit is negative, so this is one comparison: not behind the ray, and not beyond the limit.
-    let (entry, exit) = (entry.max(z_near).max(T::ZERO), exit.min(z_far) + slack);
-    (entry <= exit.min(limit)).then_some(entry)
+    // Not clamped to 0: where the ray starts inside, a negative entry is as good a lower bound.
+    let (entry, exit) = (entry.max(z_near), exit.min(z_far) + slack);
+    if entry > limit || entry > exit || exit < T::ZERO { None } else { Some(entry) }
 }

@@ -167,8 +167,13 @@ impl<W: Width> Kernel for Exact<W> {
     }
 
     #[inline(always)]
-    fn enter<const OCTANT: usize>(slopes: &W::Slopes, node: &Self::Node, limit: Distance<W>) -> [Option<Distance<W>>; 2] {
-        boxes::enter::<W, OCTANT>(slopes, node, limit)
+    fn enter<const OCTANT: usize>(
+        slopes: &W::Slopes,
+        node: &Self::Node,
+        child: usize,
+        limit: Distance<W>,
+    ) -> Option<Distance<W>> {
+        boxes::enter::<W, OCTANT>(slopes, node, child, limit)
     }
 
     #[inline(always)]

@@ -124,48 +124,47 @@ impl<const DIRECTION_BITS: u32, const UNIT_BITS: u32, const DELTA_BITS: u32>
     fn new(direction: Triple<i32>, low: Triple<i32>, high: Triple<i32>) -> Self {
         let magnitudes = direction.map(i32::unsigned_abs);
         let [x, y, z] = magnitudes;
-        if x.min(y).min(z) >> (DIRECTION_BITS - SPREAD_BITS) == 0 {
-            return Self::shifted(direction, low, high);
-        }
-        // The components' lengths, less one: 8 bits tell, of which the first two are not all 0.
-        let log2 = magnitudes.map(|d| byte_length(d >> (DIRECTION_BITS - 8)) + (DIRECTION_BITS - 9));
-        let scale = (log2[0].min(log2[1]).min(log2[2]) + 3 - UNIT_BITS).min(SCALE_MAX);
-        let slack = (1 << DELTA_BITS) + (8 << scale);
-        let mut slopes = Self { factor: [0; 3], near: [0; 3], far: [0; 3], slack, shifts: [0, 0, 0, scale as u8] };
-        for axis in [0, 1, 2] {
-            let (d, log2) = (magnitudes[axis], log2[axis]);
-            let normal = if DIRECTION_BITS > 16 { d >> (log2 - 15) } else { d << (15 - log2) };
-            let factor = ((mantissa(normal) - 2) >> (log2 + 3 - UNIT_BITS - scale)) as i32;
-            let (factor, near, far) = match direction[axis] {
-                0.. => (factor, low[axis], high[axis]),
-                _ => (-factor, high[axis], low[axis]),
-            };
-            slopes.factor[axis] = factor;
-            slopes.near[axis] = near.wrapping_mul(factor);
-            slopes.far[axis] = far.wrapping_mul(factor).wrapping_sub(slack);
-        }
-        slopes
+        let has_octant = x.min(y).min(z) >> (DIRECTION_BITS - SPREAD_BITS) != 0;
+        let [x, y, z] = if has_octant { Self::same_unit(magnitudes) } else { magnitudes.map(Self::own_unit) };
+        let slack = if has_octant { (1 << DELTA_BITS) + (8 << x.1) } else { 16 };
+        let axis = |axis: usize, factor: u32| {
+            let is_down = direction[axis] < 0;
+            let factor = if is_down { -(factor as i32) } else { factor as i32 };
+            let [first, last] = if is_down && has_octant { [high, low] } else { [low, high] };
+            let own_slack = if has_octant { slack } else { 0 };
+            let far = last[axis].wrapping_mul(factor).wrapping_sub(own_slack);
+            (factor, first[axis].wrapping_mul(factor), far)
+        };
+        let shifts = if has_octant { [0, 0, 0, x.1] } else { [x.1, y.1, z.1, 0] };
+        let [x, y, z] = [axis(0, x.0), axis(1, y.0), axis(2, z.0)];
+        Self { factor: [x.0, y.0, z.0], near: [x.1, y.1, z.1], far: [x.2, y.2, z.2], slack, shifts }
     }
 
-    /// For a direction with a small component.
-    #[cold]
+    /// Factors in Q(13 + S), each with S, for components of which none is small.
+    #[inline(always)]
+    fn same_unit(magnitudes: Triple<u32>) -> [(u32, u8); 3] {
+        // The components' lengths, less one: 8 bits tell, of which the first two are not both 0.
+        let log2 = magnitudes.map(|d| byte_length(d >> (DIRECTION_BITS - 8)) + (DIRECTION_BITS - 9));
+        let scale = (log2[0].min(log2[1]).min(log2[2]) + 3 - UNIT_BITS).min(SCALE_MAX);
+        let factor = |axis: usize| {
+            let (d, log2) = (magnitudes[axis], log2[axis]);
+            let normal = if DIRECTION_BITS > 16 { d >> (log2 - 15) } else { d << (15 - log2) };
+            ((mantissa(normal) - 2) >> (log2 + 3 - UNIT_BITS - scale), scale as u8)
+        };
+        [factor(0), factor(1), factor(2)]
+    }
+
+    /// A factor of 16 bits, and by what products with it are shifted to be in Q13.
     #[inline(never)]
-    fn shifted(direction: Triple<i32>, low: Triple<i32>, high: Triple<i32>) -> Self {
-        let mut slopes = Self { factor: [0; 3], near: [0; 3], far: [0; 3], slack: 16, shifts: [0; 4] };
-        for axis in [0, 1, 2] {
-            // For less than 2^UNIT_BITS / 8 a difference of 1 is 2^16 - 1 or more, which no t in Q13 exceeds by more than the
-            // slack.
-            let mut factor = 0xffff;
-            let r = reciprocal(direction[axis].unsigned_abs());
-            if direction[axis] != 0 && r.log2_d + 3 >= UNIT_BITS {
-                factor = (r.mantissa - 2) as i32;
-                slopes.shifts[axis] = (r.log2_d + 3 - UNIT_BITS) as u8;
-            }
-            slopes.factor[axis] = if direction[axis] < 0 { -factor } else { factor };
-            slopes.near[axis] = low[axis].wrapping_mul(slopes.factor[axis]);
-            slopes.far[axis] = high[axis].wrapping_mul(slopes.factor[axis]);
+    #[cold]
+    fn own_unit(magnitude: u32) -> (u32, u8) {
+        let r = reciprocal(magnitude);
+        if magnitude != 0 && r.log2_d + 3 >= UNIT_BITS {
+            (r.mantissa - 2, (r.log2_d + 3 - UNIT_BITS) as u8)
+        } else {
+            // A difference of 1 is then 2^16 - 1 or more, which no t in Q13 exceeds by more than the slack.
+            (0xffff, 0)
         }
-        slopes
     }
 
     #[inline(always)]

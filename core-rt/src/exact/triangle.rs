@@ -50,6 +50,11 @@ impl<T: Copy> TriangleRecord<T> {
     }
 
     #[inline(always)]
+    fn v0_fields(&self) -> Triple<T> {
+        [self.0[0], self.0[1], self.0[2]]
+    }
+
+    #[inline(always)]
     fn e1<W: Word>(&self) -> Triple<W>
     where
         T: Into<W>,
@@ -120,38 +125,28 @@ pub struct Depth<W: Width> {
     pub(super) t: W::Word,
 }
 
-/// What is known of a sign after the filter.
-#[inline(always)]
-fn sign<T: Word>(value: T, error: T) -> (bool, bool) {
-    (value >= error, value <= -error)
-}
-
 /// The hit, if there is one with 0 < t within the ray's reach.
 #[inline(always)]
 pub(super) fn intersect<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> Option<Depth<W>> {
-    let s: Triple<W::Word> = sub(ray.origin, triangle.v0());
-    let r = cross(s, ray.direction);
-    let (e1, e2): (Triple<W::Word>, Triple<W::Word>) = (triangle.e1(), triangle.e2());
-    let inside = if W::FILTERED { filtered(ray, triangle, e1, e2, r) } else { inside::<W>(ray, e1, e2, r) };
-    if inside { depth(ray, s, e1, e2) } else { None }
+    let inside = if W::FILTERED { filtered(ray, triangle) } else { decided(ray, triangle) };
+    if inside { depth(ray, triangle) } else { None }
 }
 
 /// Whether the line through the ray meets the triangle, by the filter where that decides.
-#[inline(always)]
-fn filtered<W: Width>(
-    ray: &Ray<W>,
-    triangle: &TriangleRecord<W::Short>,
-    e1: Triple<W::Word>,
-    e2: Triple<W::Word>,
-    r: Triple<W::Word>,
-) -> bool {
+///
+/// Not inlined: most triangles are missed, and what a chip with few registers has for itself here is worth more than the call.
+#[inline(never)]
+fn filtered<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> bool {
+    let [x, y, z] = triangle.v0_fields().map(W::coordinate);
+    let s = sub(ray.origin, [x, y, z]);
     let (shift, _) = W::split_meta(triangle.meta());
-    let q = r.map(|c| c >> shift);
+    let q = cross(s, ray.direction).map(|c| c >> shift);
     let edge_error = (W::Word::ONE + W::Word::ONE + W::Word::ONE) << shift;
-    let u = dot(e2, q);
-    let v = -dot(e1, q);
-    let (u_positive, u_negative) = sign(u, edge_error);
-    let (v_positive, v_negative) = sign(v, edge_error);
+    let u = dot(triangle.e2(), q);
+    let v = -dot(triangle.e1(), q);
+    // At least its error above 0, or below it: the sign is certain.
+    let (u_positive, u_negative) = (u >= edge_error, u <= -edge_error);
+    let (v_positive, v_negative) = (v >= edge_error, v <= -edge_error);
     if (u_positive && v_negative) || (u_negative && v_positive) {
         return false;
     }
@@ -161,26 +156,37 @@ fn filtered<W: Width>(
     let det = -dot(ray.direction, triangle.n()) >> down;
     let det_error = (((W::Word::ONE + W::Word::ONE + W::Word::ONE) << W::DIRECTION_BITS) >> down) + W::Word::ONE;
     let w = det.wrapping_sub(u).wrapping_sub(v);
-    let (w_positive, w_negative) = sign(w, det_error + edge_error + edge_error);
-    if (w_positive && (u_negative || v_negative)) || (w_negative && (u_positive || v_positive)) {
-        return false;
+    let w_error = det_error + edge_error + edge_error;
+    if w >= w_error {
+        if u_negative || v_negative {
+            return false;
+        }
+        if u_positive && v_positive {
+            return true;
+        }
+    } else if w <= -w_error {
+        if u_positive || v_positive {
+            return false;
+        }
+        if u_negative && v_negative {
+            return true;
+        }
     }
-
-    let all_positive = u_positive && v_positive && w_positive;
-    let all_negative = u_negative && v_negative && w_negative;
-    all_positive || all_negative || undecided(ray, e1, e2, r)
+    undecided(ray, triangle)
 }
 
-/// [`inside`], where the filter does not decide. Rare, so kept out of line.
+/// [`decided`], where the filter does not decide. Rare, so kept out of line.
 #[cold]
 #[inline(never)]
-fn undecided<W: Width>(ray: &Ray<W>, e1: Triple<W::Word>, e2: Triple<W::Word>, r: Triple<W::Word>) -> bool {
-    inside::<W>(ray, e1, e2, r)
+fn undecided<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> bool {
+    decided(ray, triangle)
 }
 
 /// Whether the line through the ray meets the triangle, without error.
 #[inline(always)]
-fn inside<W: Width>(ray: &Ray<W>, e1: Triple<W::Word>, e2: Triple<W::Word>, r: Triple<W::Word>) -> bool {
+fn decided<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> bool {
+    let [v0, e1, e2] = parts::<W>(triangle);
+    let r = cross(sub(ray.origin, v0), ray.direction);
     let zero = W::Wide::default();
     let u = W::dot(e2, r);
     let v = -W::dot(e1, r);
@@ -194,7 +200,9 @@ fn inside<W: Width>(ray: &Ray<W>, e1: Triple<W::Word>, e2: Triple<W::Word>, r: T
 
 /// t, for a line that meets the triangle.
 #[inline]
-fn depth<W: Width>(ray: &Ray<W>, s: Triple<W::Word>, e1: Triple<W::Word>, e2: Triple<W::Word>) -> Option<Depth<W>> {
+fn depth<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> Option<Depth<W>> {
+    let [v0, e1, e2] = parts::<W>(triangle);
+    let s = sub(ray.origin, v0);
     let (numerator, denominator) = fraction::<W>(ray, s, e1, e2);
     if numerator <= W::Wide::default() {
         return None;

@@ -104,6 +104,11 @@ pub trait Width: Copy + Debug + Default + Send + Sync + 'static {
     /// What the box test keeps of a ray.
     type Slopes: Slopes<Word = Self::Word>;
 
+    /// A coordinate on the grid, which is not negative.
+    #[inline(always)]
+    fn coordinate(short: Self::Short) -> Self::Word {
+        short.into()
+    }
     /// The exact `a . b`, for `a` an edge, an origin's offset or a direction and `b` a cross product of two of these.
     fn dot(a: Triple<Self::Word>, b: Triple<Self::Word>) -> Self::Wide;
     /// The exact `a . a`, for `a` an edge, an origin's offset or a direction.

@@ -62,6 +62,12 @@ impl Width for Width14 {
     type Node = BoxNode14;
     type Slopes = Slopes14;
 
+    /// Without a sign: a Cortex-M0 reads such a half-word from anywhere in a record, and one with a sign only by a register.
+    #[inline(always)]
+    fn coordinate(short: i16) -> i32 {
+        (short as u16).into()
+    }
+
     /// By 15-bit limbs of b, so that a Cortex-M0 needs `muls` alone. For |a| < 2^15 and |b| <= 2^30 a limb's product is at
     /// most 2^15 (2^15 - 1), and two of them fit; the third is added in 64 bits.
     #[inline]

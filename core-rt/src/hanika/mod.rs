@@ -185,9 +185,8 @@ impl<V: Variant> Kernel for Hanika<V> {
     }
 
     #[inline(always)]
-    fn enter<const OCTANT: usize>(ray: &Self::Path, node: &BoxNode29, limit: i32) -> [Option<i32>; 2] {
-        let [first, second] = node.planes();
-        [ray.slab.enter::<OCTANT>(ray.origin, first, limit), ray.slab.enter::<OCTANT>(ray.origin, second, limit)]
+    fn enter<const OCTANT: usize>(ray: &Self::Path, node: &BoxNode29, child: usize, limit: i32) -> Option<i32> {
+        ray.slab.enter::<OCTANT>(ray.origin, &node.planes()[child], limit)
     }
 
     #[inline(always)]
