@@ -29,7 +29,7 @@ pub use triangle::{Depth, TriangleRecord};
 pub use width::{Distance, Reciprocal, Wide, Width};
 pub use width14::Width14;
 pub use width20::Width20;
-pub use width29::{Reciprocal29, Width29};
+pub use width29::{Form, Reciprocal29, Width29, Width29In};
 
 use core::cmp::Ordering;
 use core::marker::PhantomData;

@@ -24,7 +24,7 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 use super::ray::Ray;
 use super::width::{Wide, Width};
 use crate::kernel::Vertices;
-use crate::num::{Triple, Word, bits, cross, dot, sub};
+use crate::num::{Triple, Word, bits, cross, narrow_dot, sub};
 
 /// v0, e1, e2, n = N >> k (three fields each), then shift and material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
@@ -140,10 +140,11 @@ fn filtered<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> bool
     let [x, y, z] = triangle.v0_fields().map(W::coordinate);
     let s = sub(ray.origin, [x, y, z]);
     let (shift, _) = W::split_meta(triangle.meta());
-    let q = cross(s, ray.direction).map(|c| c >> shift);
+    let taken = W::FILTER_SHIFT.unwrap_or(shift);
+    let q = cross(s, ray.direction).map(|c| c >> taken);
     let edge_error = (W::Word::ONE + W::Word::ONE + W::Word::ONE) << shift;
-    let u = dot(triangle.e2(), q);
-    let v = -dot(triangle.e1(), q);
+    let u = narrow_dot(triangle.e2(), q);
+    let v = -narrow_dot(triangle.e1(), q);
     // At least its error above 0, or below it: the sign is certain.
     let (u_positive, u_negative) = (u >= edge_error, u <= -edge_error);
     let (v_positive, v_negative) = (v >= edge_error, v <= -edge_error);
@@ -151,10 +152,16 @@ fn filtered<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> bool
         return false;
     }
 
-    // b - k = min(b, NORMAL_BITS - b), and b <= GRID_BITS <= NORMAL_BITS.
-    let down = shift.min(W::NORMAL_BITS - shift);
-    let det = -dot(ray.direction, triangle.n()) >> down;
-    let det_error = (((W::Word::ONE + W::Word::ONE + W::Word::ONE) << W::DIRECTION_BITS) >> down) + W::Word::ONE;
+    let down = match W::FILTER_SHIFT {
+        // b - k = min(b, NORMAL_BITS - b), and b <= GRID_BITS <= NORMAL_BITS.
+        None => shift.min(W::NORMAL_BITS - shift),
+        Some(taken) => taken - (2 * shift).saturating_sub(W::NORMAL_BITS),
+    };
+    let det = -narrow_dot(ray.direction, triangle.n()) >> down;
+    // Two: the shift may take a fraction off the error, and one off the determinant.
+    let det_error = (((W::Word::ONE + W::Word::ONE + W::Word::ONE) << W::DIRECTION_BITS) >> down)
+        + W::Word::ONE
+        + W::Word::ONE;
     let w = det.wrapping_sub(u).wrapping_sub(v);
     let w_error = det_error + edge_error + edge_error;
     if w >= w_error {

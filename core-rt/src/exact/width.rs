@@ -82,6 +82,9 @@ pub trait Width: Copy + Debug + Default + Send + Sync + 'static {
     /// Whether edge functions are decided in the word where their signs are certain, and exactly only elsewhere. Not where
     /// [`Width::Wide`] is as good as the word.
     const FILTERED: bool = true;
+    /// By how many bits the filter lessens R; by those of the triangle's longest edge where it is not the same for all. Then
+    /// what is left of R fits 32 bits, and it is at least 2 `GRID_BITS` - `NORMAL_BITS`.
+    const FILTER_SHIFT: Option<u32> = None;
     /// See [`Kernel::MATERIALS_MAX`](crate::kernel::Kernel::MATERIALS_MAX).
     const MATERIALS_MAX: u32;
     /// Fractional bits of the `t` that boxes and depths are compared in.

@@ -41,6 +41,20 @@ impl BitLength for u64 {
     }
 }
 
+impl BitLength for u128 {
+    #[inline(always)]
+    fn bit_length(self) -> u32 {
+        let high = (self >> 64) as u64;
+        if HAS_INSTRUCTION {
+            Self::BITS - self.leading_zeros()
+        } else if high != 0 {
+            64 + high.bit_length()
+        } else {
+            (self as u64).bit_length()
+        }
+    }
+}
+
 #[inline(always)]
 fn by_table(value: u32) -> u32 {
     let (value, above) = if value >> 16 == 0 { (value, 0) } else { (value >> 16, 16) };
