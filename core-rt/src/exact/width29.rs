@@ -151,7 +151,7 @@ where
             let above = denominator.cast_unsigned().bit_length().saturating_sub(i64::BITS - 5);
             return i64::from(Width14::depth((numerator << 4 >> above) as i64, (denominator >> above) as i64)) << 14;
         }
-        let bits = i128::BITS - denominator.leading_zeros();
+        let bits = denominator.cast_unsigned().bit_length();
         let scaled = |value: i128| if bits > 32 { value >> (bits - 32) } else { value << (32 - bits) } as u64;
         ((scaled(numerator) << Self::T_BITS) / scaled(denominator).max(1)) as i64
     }
@@ -160,7 +160,7 @@ where
     /// truncated, so it is within 2^-30 of true; the floor and the clamp keep it at most 1.
     #[inline]
     fn fraction(numerator: i128, denominator: i128) -> <Grid29 as Space>::Fraction {
-        let bits = i128::BITS - denominator.leading_zeros();
+        let bits = denominator.cast_unsigned().bit_length();
         let scaled = |value: i128| if bits > 32 { value >> (bits - 32) } else { value << (32 - bits) } as u64;
         let fraction = ((scaled(numerator) << 30) / scaled(denominator).max(1)).min(1 << 30);
         <Grid29 as Space>::Fraction::from_bits(fraction as i32)
@@ -233,7 +233,7 @@ where
 /// t in Q62 from 64 leading bits of the denominator, so within 2^-61.
 #[inline(always)]
 fn quotient_q62(numerator: i128, denominator: i128) -> i128 {
-    let bits = i128::BITS - denominator.leading_zeros();
+    let bits = denominator.cast_unsigned().bit_length();
     let scaled = |value: i128| if bits > 64 { value >> (bits - 64) } else { value } as u128;
     // t <= 1/2: the numerator is at most 2^63 here, and 2^125 shifted.
     ((scaled(numerator) << 62) / scaled(denominator).max(1)) as i128
