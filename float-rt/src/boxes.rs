@@ -130,7 +130,10 @@ mod tests {
             let Some(ray) = Ray::new(origin, direction.map(|c| c as f32), f32::INFINITY, NONE) else { continue };
             let node = pack::<f32>([Bounds { low: point, high: point }; 2], [0; 2]);
             let path = ray.path();
-            assert!(enter::<_, ANY_OCTANT>(&path, &node, 0, f32::INFINITY).is_some(), "{point:?} {direction:?} {steps}");
+            assert!(
+                enter::<_, ANY_OCTANT>(&path, &node, 0, f32::INFINITY).is_some(),
+                "{point:?} {direction:?} {steps}"
+            );
             let bare = Path { leaving: path.entering, ..path };
             unpadded += u32::from(enter::<_, ANY_OCTANT>(&bare, &node, 0, f32::INFINITY).is_none());
         }

@@ -1,11 +1,11 @@
 //! Child boxes in pairs, and the conservative slab test (Kay & Kajiya 1986; Williams et al. 2005).
 //!
-//! **No false miss.** Let a ray hit a triangle in the box at t, and let T be t in the unit of `T_BITS`. Along each
+//! **No false miss.** Let a ray hit a triangle in the box at t, and let T be t in the unit of its [`Slopes`]. Along each
 //! axis the hit lies between the near and the far plane, so true entry <= T <= true exit. The computed entry is never
-//! above the true one where that is not negative, and negative where it is ([`Reciprocal`]), while T >= 0. The
-//! computed exit is below the true one by at most `SLACK` where that is not beyond `T_MAX` (each width's argument), and not
-//! below `T_MAX - SLACK` where it is, since `along` keeps order. So entry <= exit + SLACK, exit >= -SLACK, and
-//! entry <= limit + SLACK for every limit that is at most `SLACK` below T. `docs/EXACTNESS.md` has it step by step.
+//! above the true one where that is not negative, and negative where it is, while T >= 0. The computed exit is below the true one by
+//! at most the slack where that is not beyond the largest T, and not below that less the slack where it is, since distances keep
+//! the order of planes. So entry <= exit + slack, exit >= -slack, and entry <= limit for the limit of every depth that is at
+//! most the slack below T. `docs/EXACTNESS.md` has it step by step.
 //!
 //! High corners are stored plus one: a ray that does not move along an axis and lies in the box's last plane then has
 //! a difference of 1 to it, not 0.

@@ -20,15 +20,15 @@ mod width20;
 mod width29;
 
 pub(crate) use boxes::slab;
-pub(crate) use slopes::in_order;
 pub use boxes::{BoxNode, BoxNode14, BoxNode29};
 pub use ray::Ray;
+pub(crate) use slopes::in_order;
 pub use slopes::{PerAxis, Slopes, Slopes14, Slopes29};
 pub(crate) use sphere::{Crossing, crossing};
 pub use triangle::{Depth, TriangleRecord};
 pub use width::{Distance, Reciprocal, Wide, Width};
 pub use width14::Width14;
-pub use width20::Width20;
+pub use width20::{Reciprocal20, Width20};
 pub use width29::{Form, Reciprocal29, Width29, Width29In};
 
 use core::cmp::Ordering;

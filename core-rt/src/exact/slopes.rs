@@ -260,3 +260,50 @@ slopes!(
         Scaled::new(direction.map(|c| c as i32), up, down)
     }
 );
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Components at the ends of every length, and whole directions of them.
+    fn directions(bits: u32) -> impl Iterator<Item = Triple<i32>> {
+        let ends = move || (0..bits).flat_map(|b| [1i32 << b, (1 << b) + (1 << b) / 3, ((1i64 << (b + 1)) - 1) as i32]);
+        let largest = [1i32 << (bits - 1), ((1i64 << bits) - 1) as i32];
+        largest.into_iter().flat_map(move |x| ends().flat_map(move |y| ends().chain([0]).map(move |z| [x, -y, z])))
+    }
+
+    fn factors<const DIRECTION_BITS: u32, const UNIT_BITS: u32, const DELTA_BITS: u32>(delta_most: i128) -> [u32; 2] {
+        let mut counts = [0; 2];
+        for direction in directions(DIRECTION_BITS) {
+            let slopes = Scaled::<DIRECTION_BITS, UNIT_BITS, DELTA_BITS>::new(direction, [0; 3], [0; 3]);
+            let has_octant = slopes.octant() != ANY_OCTANT;
+            counts[usize::from(has_octant)] += 1;
+            for axis in [0, 1, 2] {
+                let (d, f) = (i128::from(direction[axis]).abs(), i128::from(slopes.factor[axis]).abs());
+                assert!(f > 0 && f < 1 << 16 && (slopes.factor[axis] < 0) == (direction[axis] < 0), "{direction:?}");
+                if d == 0 {
+                    assert_eq!((f, slopes.shifts[axis]), (0xffff, 0));
+                    continue;
+                }
+                let shift = if has_octant { slopes.shifts[3] } else { slopes.shifts[axis] };
+                // T = delta / d with so many bits; it counts up to 2^16 in Q13.
+                let one = 1i128 << (13 + u32::from(shift) + UNIT_BITS);
+                assert!(f * d <= one, "{direction:?}: {axis} is high");
+                let most = delta_most.min(((d << (3 + shift)) >> UNIT_BITS) + 1);
+                let (exit, found) = (most * one / d, most * f);
+                let (exit, found) = if has_octant { (exit, found) } else { (exit >> shift, found >> shift) };
+                let counts_up_to = 1 << if has_octant { 16 + shift } else { 16 };
+                assert!(found + i128::from(slopes.slack) >= exit.min(counts_up_to), "{direction:?}: {axis} is low");
+            }
+        }
+        counts
+    }
+
+    #[test]
+    fn factors_are_never_high_and_exits_low_by_less_than_the_slack() {
+        let [shifted, by_octant] = factors::<13, 0, 15>(1 << 15);
+        assert!(shifted > 500 && by_octant > 500, "{shifted} {by_octant}");
+        let [shifted, by_octant] = factors::<31, 20, 14>((1 << 13) + 1);
+        assert!(shifted > 500 && by_octant > 500, "{shifted} {by_octant}");
+    }
+}

@@ -7,13 +7,12 @@
 //! The line through the ray meets the triangle iff U, V and W have one sign (zero belongs to both: edges are inclusive)
 //! and det is not 0. It is a hit iff t > 0.
 //!
-//! **Filter.** Let e be below 2^b for all edges e of the triangle (b is its `shift`), and q = R >> b. Then
-//! u = e2 . q is U / 2^b low or high by less than |e2|_1, since each component of R / 2^b - q is in [0, 1). So
-//! |u - U / 2^b| < 3 * 2^b, and likewise v. With R below 2^c, `|u| <= 3 * 2^b * 2^(c - b)` fits the word.
+//! **Filter.** Let e be below 2^b for all edges e of the triangle (b is its `shift`), m be b or [`Width::FILTER_SHIFT`], and
+//! q = R >> m. Then u = e2 . q is U / 2^m low or high by less than |e2|_1, since each component of R / 2^m - q is in [0, 1). So
+//! |u - U / 2^m| < 3 * 2^b, and likewise v. With R below 2^c, `|u| <= 3 * 2^b * 2^(c - m)` fits the word.
 //! The record keeps n = N >> k, k = max(0, 2 b - NORMAL_BITS). Then -(D . n) is det / 2^k within |D|_1, and shifted right
-//! by b - k it is det / 2^b within (3 * 2^DIRECTION_BITS >> (b - k)) + 1; no bit is lost there, since
-//! b - k = min(b, NORMAL_BITS - b) <= DIRECTION_BITS. W is a triple product with the third edge, as U and V are with theirs,
-//! so W / 2^b and its error, far below 2^c, fit the word although the terms' sum may not: it is computed by wrapping.
+//! by m - k it is det / 2^m within (3 * 2^DIRECTION_BITS >> (m - k)) + 2. W is a triple product with the third edge, as U and V
+//! are with theirs, so W / 2^m and its error, far below 2^c, fit the word although the terms' sum may not: it is computed by wrapping.
 //! Where the filter is undecided, the same sums are formed in [`Width::Wide`], without error. `docs/EXACTNESS.md` has the
 //! proof step by step.
 
@@ -153,15 +152,14 @@ fn filtered<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> bool
     }
 
     let down = match W::FILTER_SHIFT {
-        // b - k = min(b, NORMAL_BITS - b), and b <= GRID_BITS <= NORMAL_BITS.
+        // m - k = b - k = min(b, NORMAL_BITS - b), and b <= GRID_BITS <= NORMAL_BITS.
         None => shift.min(W::NORMAL_BITS - shift),
         Some(taken) => taken - (2 * shift).saturating_sub(W::NORMAL_BITS),
     };
     let det = -narrow_dot(ray.direction, triangle.n()) >> down;
     // Two: the shift may take a fraction off the error, and one off the determinant.
-    let det_error = (((W::Word::ONE + W::Word::ONE + W::Word::ONE) << W::DIRECTION_BITS) >> down)
-        + W::Word::ONE
-        + W::Word::ONE;
+    let det_error =
+        (((W::Word::ONE + W::Word::ONE + W::Word::ONE) << W::DIRECTION_BITS) >> down) + W::Word::ONE + W::Word::ONE;
     let w = det.wrapping_sub(u).wrapping_sub(v);
     let w_error = det_error + edge_error + edge_error;
     if w >= w_error {

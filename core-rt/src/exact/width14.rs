@@ -49,9 +49,8 @@ impl Width for Width14 {
     const NORMAL_BITS: u32 = 15;
     const MATERIALS_MAX: u32 = (1 << 12) - 1;
     const T_BITS: u32 = 13;
-    /// An exit T <= 2^16 is computed low by less than T 2^-14 (the reciprocal) + 1 (the shift) <= 5. A depth is high by
-    /// less than 2^16 2^-15 = 2 (its denominator is truncated to 16 bits) and low by less than 2^16 2^-14 + 2 (its
-    /// numerator, truncated, times a mantissa of 2^16 / 2^15) + 1 = 7.
+    /// A depth is high by less than 2^16 2^-15 = 2 (its denominator is truncated to 16 bits) and low by less than
+    /// 2^16 2^-14 + 2 (its numerator, truncated, times a mantissa of 2^16 / 2^15) + 1 = 7. Of boxes [`Slopes14`] says it.
     const SLACK: i32 = 8;
     const T_MAX: i32 = 1 << 16;
 

@@ -97,8 +97,10 @@ impl<const LEAST: i64> Slab for TightSlab<LEAST> {
     fn enter<const OCTANT: usize>(&self, origin: Triple<i64>, planes: &[[u32; 3]; 2], limit: i32) -> Option<i32> {
         // entry >> (C - D) <= limit; below 2^37.
         let limit = ((i64::from(limit) + 1) << self.fraction_bits) - 1;
-        let along = |axis: usize, plane: u32| ((i64::from(plane) - origin[axis]) >> self.d_bits) * self.reciprocal[axis];
-        let crossed = |axis: usize| in_order::<OCTANT, _>(axis, along(axis, planes[0][axis]), along(axis, planes[1][axis]));
+        let along =
+            |axis: usize, plane: u32| ((i64::from(plane) - origin[axis]) >> self.d_bits) * self.reciprocal[axis];
+        let crossed =
+            |axis: usize| in_order::<OCTANT, _>(axis, along(axis, planes[0][axis]), along(axis, planes[1][axis]));
         slab(limit, 0, crossed).map(|entry| (entry >> self.fraction_bits) as i32)
     }
 }
@@ -121,7 +123,8 @@ impl Slab for ConservativeSlab {
     #[inline(always)]
     fn enter<const OCTANT: usize>(&self, origin: Triple<i64>, planes: &[[u32; 3]; 2], limit: i32) -> Option<i32> {
         let along = |axis: usize, plane: u32| self.0[axis].along(i64::from(plane) - origin[axis]);
-        let crossed = |axis: usize| in_order::<OCTANT, _>(axis, along(axis, planes[0][axis]), along(axis, planes[1][axis]));
+        let crossed =
+            |axis: usize| in_order::<OCTANT, _>(axis, along(axis, planes[0][axis]), along(axis, planes[1][axis]));
         slab(i64::from(limit) + Reciprocal29::SLACK, Reciprocal29::SLACK, crossed).map(|entry| entry as i32)
     }
 }

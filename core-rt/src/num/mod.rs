@@ -74,6 +74,7 @@ macro_rules! word {
             }
             #[inline(always)]
             fn product(self, other: Self) -> Self {
+                debug_assert!([self, other].map(|c| Self::from(c as i32)) == [self, other]);
                 if cfg!(target_pointer_width = "32") {
                     Self::from(self as i32) * Self::from(other as i32)
                 } else {
