@@ -32,7 +32,7 @@ const GROWTH: u64 = 100;
 const RENEWED: &str = "INTRAY_BLESS=1 cargo test -p tests --profile checked --test instructions";
 
 /// Scene, kernel, size, and the nearest hits alone.
-const SET: [(&str, &str, [u16; 2], Option<Way>); 5] = [
+const SET: [(&str, &str, [u32; 2], Option<Way>); 5] = [
     ("bench-1k", "exact14", [80, 64], Some(Way::Single)),
     ("bench-1k", "exact29", [80, 64], Some(Way::Single)),
     ("bench-1k", "f32", [40, 32], Some(Way::Single)),
@@ -58,7 +58,7 @@ fn compiler() -> String {
     String::from_utf8_lossy(&output.stdout).trim().to_owned()
 }
 
-fn model(scene: &str, size: [u16; 2]) -> Model {
+fn model(scene: &str, size: [u32; 2]) -> Model {
     let loaded = match scene {
         "built-in" => import::load_from(&Embedded(builtin::FILES), "scene.toml"),
         _ => import::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenes/{scene}/scene.toml"))),
@@ -69,7 +69,7 @@ fn model(scene: &str, size: [u16; 2]) -> Model {
 }
 
 fn counted(board: &'static Board, counter: &Counter) -> BTreeMap<String, u64> {
-    let count = |(scene, kernel, size, hits): (&str, &str, [u16; 2], Option<Way>)| {
+    let count = |(scene, kernel, size, hits): (&str, &str, [u32; 2], Option<Way>)| {
         let engine = engine::by_name(kernel).expect("a kernel of this name");
         let blob = engine.prepare(&model(scene, size), &Options::default()).expect("it fits").blob;
         let wanted = Wanted { board, blob: blob.bytes(), hits, count: false };
