@@ -68,8 +68,9 @@ pub(crate) fn shade<'a, P: Profile>(
         if P::NEEDS.has(Need::Ambient) {
             diffuse = Colour::constant(&scene.frame.ambient);
         }
-        for light in scene.shading.lights {
+        for (number, light) in (0..).zip(scene.shading.lights) {
             let Some(arriving) = arriving(scene, &surface, smooth, light, hit, stack, stats) else { continue };
+            stats.light(number);
             diffuse = diffuse.plus(Colour::lit(&arriving.light, arriving.cosine));
             if let Some((lustre, along)) = shine {
                 let lobe = lobe::<P>(lustre, along, normal, arriving.towards);

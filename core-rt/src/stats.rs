@@ -34,6 +34,17 @@ pub trait Stats {
     /// The shadow ray that was told of last has been followed to its end.
     #[inline(always)]
     fn lit(&mut self) {}
+    /// The surface that a camera ray, a mirrored one or one through a surface sees, by its number in the file;
+    /// [`NONE`](crate::kernel::NONE) for the background.
+    #[inline(always)]
+    fn surface(&mut self, id: impl FnOnce() -> u32) {
+        let _ = id;
+    }
+    /// A light, by its number, reaches that surface.
+    #[inline(always)]
+    fn light(&mut self, number: u32) {
+        let _ = number;
+    }
     /// Of the mirrored rays and those through surfaces that were told of, the last that waits is taken up; or none is left.
     #[inline(always)]
     fn next(&mut self) {}

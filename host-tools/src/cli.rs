@@ -8,10 +8,12 @@ mod emulate;
 mod failure;
 mod input;
 mod inspect;
+mod load;
 mod output;
 mod prep;
 mod progress;
 mod render;
+mod report;
 mod run_elf;
 mod trace;
 
@@ -39,6 +41,7 @@ enum Command {
     Trace(trace::Arguments),
     Compare(compare::Arguments),
     Emulate(emulate::Arguments),
+    Report(report::Arguments),
     #[command(hide = true)]
     RunElf(run_elf::Arguments),
 }
@@ -54,6 +57,7 @@ pub fn run() -> ExitCode {
         Some(Command::Trace(arguments)) => trace::run(&arguments),
         Some(Command::Compare(arguments)) => compare::run(&arguments),
         Some(Command::Emulate(arguments)) => emulate::run(&arguments),
+        Some(Command::Report(arguments)) => report::run(&arguments),
         Some(Command::RunElf(arguments)) => run_elf::run(&arguments),
     };
     match done {

@@ -1,6 +1,8 @@
 //! Kernels by name: what the command line can ask of each, behind one interface.
 
+use std::hint::black_box;
 use std::marker::PhantomData;
+use std::time::Instant;
 
 use core_rt::blob::{BlobError, Header};
 use core_rt::exact::{Exact14, Exact20, Exact29};
@@ -9,13 +11,15 @@ use core_rt::profile::Full;
 use core_rt::scene::Scene;
 use float_rt::{Float32, Float64};
 
+use crate::grid::{Grid, GridError};
 use crate::model::Model;
 use crate::prepare::{self, Options, PrepareError, Prepared};
 use crate::render::{self, Progress, Rendered};
 use crate::trace::{Measure, Trace, Tracer};
+use crate::witness::Seen;
 
 /// What can be done with a kernel.
-pub trait Engine: Sync {
+pub trait Engine: Sync + std::fmt::Debug {
     /// The kernel's name.
     fn name(&self) -> &'static str;
     /// The kernel's number in a blob.
@@ -24,6 +28,11 @@ pub trait Engine: Sync {
     fn grid_bits(&self) -> u32;
     /// The least radius of a sphere, grid units.
     fn radius_min(&self) -> i32;
+    /// The finest grid that it has for a model.
+    ///
+    /// # Errors
+    /// Where it has none.
+    fn grid(&self, model: &Model) -> Result<Grid, GridError>;
     /// A model as a blob.
     ///
     /// # Errors
@@ -39,6 +48,16 @@ pub trait Engine: Sync {
     /// # Errors
     /// Where the blob is not one for this kernel.
     fn render(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<Rendered, BlobError>;
+    /// The same, and what the rays of each pixel saw, row by row.
+    ///
+    /// # Errors
+    /// Where the blob is not one for this kernel.
+    fn witness(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<(Rendered, Vec<Seen>), BlobError>;
+    /// Seconds that drawing a blob takes, on the threads of the current rayon pool; checking it beforehand is not counted.
+    ///
+    /// # Errors
+    /// Where the blob is not one for this kernel.
+    fn seconds(&self, blob: &[u8], tile: [u16; 2]) -> Result<f64, BlobError>;
     /// What finds the nearest hits in a blob's scene.
     ///
     /// # Errors
@@ -70,7 +89,7 @@ pub struct Sizes {
 #[derive(Debug)]
 struct Of<K>(PhantomData<K>);
 
-impl<K: Measure> Engine for Of<K> {
+impl<K: Measure + std::fmt::Debug> Engine for Of<K> {
     fn name(&self) -> &'static str {
         K::NAME
     }
@@ -85,6 +104,10 @@ impl<K: Measure> Engine for Of<K> {
 
     fn radius_min(&self) -> i32 {
         K::RADIUS_MIN
+    }
+
+    fn grid(&self, model: &Model) -> Result<Grid, GridError> {
+        Grid::fit::<K>(model)
     }
 
     fn prepare(&self, model: &Model, options: &Options) -> Result<Prepared, PrepareError> {
@@ -111,6 +134,17 @@ impl<K: Measure> Engine for Of<K> {
 
     fn render(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<Rendered, BlobError> {
         Ok(render::render(&Scene::<Full<K>>::new_checked(blob)?, tile, progress))
+    }
+
+    fn witness(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<(Rendered, Vec<Seen>), BlobError> {
+        Ok(render::witness(&Scene::<Full<K>>::new_checked(blob)?, tile, progress))
+    }
+
+    fn seconds(&self, blob: &[u8], tile: [u16; 2]) -> Result<f64, BlobError> {
+        let scene = Scene::<Full<K>>::new_checked(blob)?;
+        let begin = Instant::now();
+        black_box(render::render(&scene, tile, &|_| ()));
+        Ok(begin.elapsed().as_secs_f64())
     }
 
     fn tracer<'a>(&self, blob: &'a [u8]) -> Result<Box<dyn Trace + 'a>, BlobError> {

@@ -12,6 +12,9 @@ use thiserror::Error;
 use crate::model::{LightKind, Model, Sphere, Triangle};
 use crate::plane::Plane;
 
+/// The fewest bits that a grid may be asked to have: with margins, enough for a shape to be told.
+pub const LEAST_BITS: u32 = 8;
+
 /// Why a model has no grid.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 pub enum GridError {
@@ -40,10 +43,19 @@ impl Grid {
     ///
     /// # Errors
     /// Where the geometry has no extent, or so little for its distance from zero that f64 cannot place it.
+    pub fn fit<K: Kernel>(model: &Model) -> Result<Self, GridError> {
+        Self::fit_to::<K>(model, K::GRID_BITS)
+    }
+
+    /// The finest grid of so many bits, from [`LEAST_BITS`] to the kernel's own, for a model: what a kernel of fewer bits
+    /// would have.
+    ///
+    /// # Errors
+    /// As [`Grid::fit`].
     ///
     /// With k = origin * scale, an axis asks for `g s - k` of the geometry in `[m, M]`, and for `|o s - g s|` of every
     /// origin at most the kernel's span.
-    pub fn fit<K: Kernel>(model: &Model) -> Result<Self, GridError> {
+    pub fn fit_to<K: Kernel>(model: &Model, grid_bits: u32) -> Result<Self, GridError> {
         let geometry = Extent::of(ends(model)).ok_or(GridError::NoExtent)?;
         let lights = model.lights.iter().filter_map(|light| match light.kind {
             LightKind::Point(position) => Some(position),
@@ -60,14 +72,17 @@ impl Grid {
         }
 
         // A unit less than the range, so that no rounding leaves it; and whole units, so that what is on a grid stays there.
-        let (grid_low, grid_high) = (f64::from(K::MARGIN) + 1.0, f64::from((1 << K::GRID_BITS) - K::MARGIN) - 2.0);
+        let (grid_low, grid_high) = (f64::from(K::MARGIN) + 1.0, f64::from((1 << grid_bits) - K::MARGIN) - 2.0);
         // Origins in a plane are rounded with their coefficients, by two units more.
-        let span = f64::from(K::SPAN) - if plane.is_some() { 3.0 } else { 1.0 };
+        let span = ((1 << grid_bits) - K::MARGIN).min(K::SPAN);
+        let room_for_origins = f64::from(span) - if plane.is_some() { 3.0 } else { 1.0 };
         let mut scale = f64::INFINITY;
         for axis in 0..3 {
             let (g0, g1) = (geometry.low[axis], geometry.high[axis]);
             let (o0, o1) = (origins.low[axis], origins.high[axis]);
-            for (extent, room) in [(g1 - g0, grid_high - grid_low), (g1 - o0, span), (o1 - g0, span)] {
+            for (extent, room) in
+                [(g1 - g0, grid_high - grid_low), (g1 - o0, room_for_origins), (o1 - g0, room_for_origins)]
+            {
                 if extent > 0.0 {
                     scale = scale.min(room / extent);
                 }
@@ -77,11 +92,11 @@ impl Grid {
         let axis_origin = |axis: usize| geometry.low[axis] - grid_low / scale;
         let grid = Self { origin: DVec3::new(axis_origin(0), axis_origin(1), axis_origin(2)), scale };
         // Placing rounds, but keeps order: if the ends are in range, all is.
-        let whole = Bounds { low: [K::MARGIN; 3], high: [(1 << K::GRID_BITS) - 1 - K::MARGIN; 3] };
+        let whole = Bounds { low: [K::MARGIN; 3], high: [(1 << grid_bits) - 1 - K::MARGIN; 3] };
         let placed = Bounds { low: grid.place(geometry.low), high: grid.place(geometry.high) };
         // Of a sphere centre and radius are rounded, half a unit each: what was left over has room for that.
         let placed = model.spheres.iter().fold(placed, |all, sphere| all.union(&grid.ball(sphere).bounds()));
-        let spanned = |origin| placed.spanned_from(grid.place(origin), K::SPAN);
+        let spanned = |origin| placed.spanned_from(grid.place(origin), span);
         let fits = whole.contains(&placed) && spanned(origins.low) && spanned(origins.high);
         if fits { Ok(grid) } else { Err(GridError::TooFar) }
     }

@@ -2,6 +2,7 @@
 //! independent f64 reference.
 
 pub mod builtin;
+pub mod choose;
 pub mod cli;
 pub mod compare;
 pub mod decimate;
@@ -21,3 +22,4 @@ pub mod report;
 pub mod textures;
 pub mod trace;
 pub mod tree;
+pub mod witness;

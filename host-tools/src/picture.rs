@@ -57,6 +57,14 @@ pub enum PictureError {
     },
 }
 
+/// A width and a height as `WxH` has them; those that are too large or negative are 0.
+#[must_use]
+pub fn parse_size(text: &str) -> Option<[u32; 2]> {
+    let (width, height) = text.split_once(['x', 'X'])?;
+    let side = |side: &str| Some(u32::try_from(side.trim().parse::<i64>().ok()?).unwrap_or(0));
+    Some([side(width)?, side(height)?])
+}
+
 /// Whether a picture may have this size: sides of 1 to [`MAX_SIDE`], at most [`MAX_PIXELS`] pixels.
 pub const fn size_is_allowed(width: u32, height: u32) -> bool {
     let sides = width >= 1 && width <= MAX_SIDE && height >= 1 && height <= MAX_SIDE;
@@ -128,15 +136,11 @@ impl Picture {
         Ok(Self { width, height, rgb: decoded.as_raw().as_chunks().0.to_vec() })
     }
 
-    /// Writes an 8-bit PNG, gray where every pixel is and RGB otherwise, whole or not at all.
-    ///
-    /// # Errors
-    /// [`PictureError`] where the folder does not exist or cannot be written to, or the size is not allowed.
-    pub fn write_png(&self, path: &Path) -> Result<(), PictureError> {
+    /// The bytes of an 8-bit PNG, gray where every pixel is and RGB otherwise; `None` where the size is not allowed.
+    pub fn to_png(&self) -> Option<Vec<u8>> {
         let (width, height) = (self.width, self.height);
-        let refused = PictureError::Size { path: path.into(), width, height };
         if !size_is_allowed(width, height) {
-            return Err(refused);
+            return None;
         }
         let mut bytes = Vec::new();
         let encoder = PngEncoder::new(&mut bytes);
@@ -146,7 +150,19 @@ impl Picture {
         } else {
             encoder.write_image(self.rgb.as_flattened(), width, height, ExtendedColorType::Rgb8)
         };
-        encoded.map_err(|_| refused)?;
+        encoded.ok().map(|()| bytes)
+    }
+
+    /// Writes [`Self::to_png`], whole or not at all.
+    ///
+    /// # Errors
+    /// [`PictureError`] where the folder does not exist or cannot be written to, or the size is not allowed.
+    pub fn write_png(&self, path: &Path) -> Result<(), PictureError> {
+        let bytes = self.to_png().ok_or_else(|| PictureError::Size {
+            path: path.into(),
+            width: self.width,
+            height: self.height,
+        })?;
         Ok(files::write_atomically(path, &bytes)?)
     }
 }

@@ -20,7 +20,7 @@ use core_rt::record::Material;
 use core_rt::sphere::Ball;
 use thiserror::Error;
 
-use crate::grid::{Grid, GridError, Snapped};
+use crate::grid::{Grid, GridError, LEAST_BITS, Snapped};
 use crate::model::Model;
 use crate::textures::Texels;
 use crate::tree::{self, Tree, TreeOptions};
@@ -32,6 +32,8 @@ pub struct Options {
     pub tree: TreeOptions,
     /// What is asked of the kernel's arithmetic.
     pub knobs: Knobs,
+    /// The bits of the grid, from [`LEAST_BITS`] to the kernel's own; `None` for those.
+    pub grid_bits: Option<u32>,
     /// How texels are stored; `None` for the way that suits the output.
     pub texels: Option<Texels>,
 }
@@ -74,6 +76,16 @@ pub enum PrepareError {
         /// How many there are.
         found: usize,
         /// How many there may be.
+        most: u32,
+        /// The kernel's name.
+        kernel: &'static str,
+    },
+    /// A grid of more bits than the kernel has, or of too few.
+    #[error("a grid of {asked} bits; {kernel} has grids of {LEAST_BITS} to {most}")]
+    GridBits {
+        /// What is asked for.
+        asked: u32,
+        /// The kernel's own.
         most: u32,
         /// The kernel's name.
         kernel: &'static str,
@@ -156,7 +168,11 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
     if used.len() > K::MATERIALS_MAX as usize + 1 {
         return Err(PrepareError::TooManyMaterials { found: used.len(), most: K::MATERIALS_MAX + 1, kernel: K::NAME });
     }
-    let grid = Grid::fit::<K>(model)?;
+    let grid_bits = options.grid_bits.unwrap_or(K::GRID_BITS);
+    if !(LEAST_BITS..=K::GRID_BITS).contains(&grid_bits) {
+        return Err(PrepareError::GridBits { asked: grid_bits, most: K::GRID_BITS, kernel: K::NAME });
+    }
+    let grid = Grid::fit_to::<K>(model, grid_bits)?;
     let snapped = grid.snap(model);
     let (ids, mut degenerates) = with_area(&snapped);
     let balls = with_room::<K>(model, &grid, &mut degenerates);
@@ -164,9 +180,9 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
         return Err(PrepareError::AllDegenerate {
             triangles: model.triangles.len(),
             spheres: model.spheres.len(),
-            bits: K::GRID_BITS,
+            bits: grid_bits,
             kernel: K::NAME,
-            keeper: loss::keeps_some(K::GRID_BITS, model),
+            keeper: loss::keeps_some(grid_bits, model),
         });
     }
     let Tree { root, nodes, order, depth } = tree::build_mixed(

@@ -1,7 +1,13 @@
-//! The boards that can be emulated here.
+//! The boards that can be emulated here, and programs for them.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use firmware_rt::board::{BOARDS, Board};
 use host_tools::emulate;
+use host_tools::emulate::counter::Counter;
+use host_tools::emulate::elf::Elf;
+use host_tools::emulate::machine::Machine;
 
 /// The boards whose emulator and whose target are installed; of others it is said that they are skipped.
 pub fn boards() -> impl Iterator<Item = &'static Board> {
@@ -12,4 +18,35 @@ pub fn boards() -> impl Iterator<Item = &'static Board> {
             false
         }
     })
+}
+
+/// Those of them whose instructions can be counted, each with what counts them.
+pub fn counted() -> impl Iterator<Item = (&'static Board, Counter)> {
+    boards().filter_map(|board| match Counter::provide(&Machine::of(board)) {
+        Ok(counter) => Some((board, counter)),
+        Err(reason) => {
+            println!("skipped {}: {reason}", board.name);
+            None
+        }
+    })
+}
+
+/// A program of a board's package other than its firmware, by the first part of its name.
+///
+/// # Panics
+/// If it cannot be built.
+#[must_use]
+pub fn program(board: &Board, kind: &str) -> Elf {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
+    let target = std::path::absolute(target).expect("there is a current folder");
+    let name = board.package.replace("firmware", kind);
+    let status = Command::new(env!("CARGO"))
+        .args(["build", "--quiet", "--profile", "firmware", "--package", board.package, "--bin", &name])
+        .args(["--target", board.target])
+        .env("CARGO_TARGET_DIR", &target)
+        .current_dir(&root)
+        .status();
+    assert!(status.expect("cargo can be started").success());
+    Elf::read(&target.join(board.target).join("firmware").join(name), board).expect("it was just built")
 }

@@ -11,7 +11,6 @@ use host_tools::emulate::breakdown::{Breakdown, KINDS};
 use host_tools::emulate::counter::Counter;
 use host_tools::emulate::elf::Elf;
 use host_tools::emulate::firmware::Wanted;
-use host_tools::emulate::machine::Machine;
 use host_tools::emulate::parts::{PARTS, Part, Range};
 use host_tools::emulate::{Outcome, Run};
 use host_tools::engine;
@@ -20,21 +19,10 @@ use host_tools::model::Model;
 use host_tools::prepare::Options;
 use object::read::elf::ElfFile32;
 use object::{Endianness, Object, ObjectSymbol, SymbolKind};
-use tests::boards::boards;
+use tests::boards::{boards, counted};
 use tests::scenes;
 
 const LIMIT: Duration = Duration::from_secs(120);
-
-/// The boards on which instructions can be counted.
-fn counted() -> impl Iterator<Item = (&'static Board, Counter)> {
-    boards().filter_map(|board| match Counter::provide(&Machine::of(board)) {
-        Ok(counter) => Some((board, counter)),
-        Err(reason) => {
-            println!("skipped {}: {reason}", board.name);
-            None
-        }
-    })
-}
 
 fn prepared(model: &Model, kernel: &str) -> Vec<u8> {
     let engine = engine::by_name(kernel).expect("a kernel of this name");

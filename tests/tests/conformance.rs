@@ -163,7 +163,7 @@ where
     W: Width<Word: Into<i64>, Wide: Into<i128>>,
 {
     let meshes = meshes::all(W::GRID_BITS);
-    // Over all meshes and leaf sizes.
+    // Over all meshes and leaf sizes; the long run takes ten million.
     let rays = if tests::effort() > 1 { 10_000_000 } else { rays };
     let count = rays / (3 * meshes.len()) + 1;
     for (seed, (name, triangles)) in (1..).zip(&meshes) {
@@ -175,17 +175,17 @@ where
 
 #[test]
 fn exact14_over_small_scenes() {
-    small::<Width14>(1_000_000);
+    small::<Width14>(300_000);
 }
 
 #[test]
 fn exact20_over_small_scenes() {
-    small::<Width20>(300_000);
+    small::<Width20>(100_000);
 }
 
 #[test]
 fn exact29_over_small_scenes() {
-    small::<Width29>(1_000_000);
+    small::<Width29>(300_000);
 }
 
 /// The form that chips of 32 bits have, on any machine: every one of its narrow products is checked to be of narrow factors.
@@ -214,17 +214,17 @@ where
 
 #[test]
 fn exact14_over_large_scenes() {
-    large::<Width14>(10_000);
+    large::<Width14>(3_000);
 }
 
 #[test]
 fn exact20_over_large_scenes() {
-    large::<Width20>(3_000);
+    large::<Width20>(1_000);
 }
 
 #[test]
 fn exact29_over_large_scenes() {
-    large::<Width29>(10_000);
+    large::<Width29>(3_000);
 }
 
 /// A comparison that cannot fail would prove nothing: with one triangle's vertex moved by one unit it must fail.

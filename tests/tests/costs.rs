@@ -3,17 +3,11 @@
 //! The program is `firmware_rt::costs`. Boards for which QEMU or the compiler's library is absent are skipped, with a line
 //! that says so.
 
-use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::time::Duration;
 
-use firmware_rt::board::Board;
 use firmware_rt::costs::{CALLS, OPERATIONS};
 use host_tools::emulate::Run;
-use host_tools::emulate::counter::Counter;
-use host_tools::emulate::elf::Elf;
-use host_tools::emulate::machine::Machine;
-use tests::boards::boards;
+use tests::boards::{counted, program};
 
 /// The most that normalising a vector may take, instructions: on a chip that multiplies 32 bits by 32 to 32 alone, and on
 /// one that has the upper half too.
@@ -47,32 +41,10 @@ fn complaint(board: &str, operation: &str, most: u64) -> Option<String> {
     is_dear.then(|| format!("{operation} takes {most} instructions on {board}, and may take {limit}"))
 }
 
-fn program(board: &Board) -> Elf {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
-    let target = std::path::absolute(target).expect("there is a current folder");
-    let name = board.package.replace("firmware", "costs");
-    let status = Command::new(env!("CARGO"))
-        .args(["build", "--quiet", "--profile", "firmware", "--package", board.package, "--bin", &name])
-        .args(["--target", board.target])
-        .env("CARGO_TARGET_DIR", &target)
-        .current_dir(&root)
-        .status();
-    assert!(status.expect("cargo can be started").success());
-    Elf::read(&target.join(board.target).join("firmware").join(name), board).expect("it was just built")
-}
-
 #[test]
 fn normalising_is_cheap() {
-    for board in boards() {
-        let counter = match Counter::provide(&Machine::of(board)) {
-            Ok(counter) => counter,
-            Err(reason) => {
-                println!("skipped {}: {reason}", board.name);
-                continue;
-            }
-        };
-        let elf = program(board);
+    for (board, counter) in counted() {
+        let elf = program(board, "costs");
         let limit = Duration::from_secs(60);
         let counts =
             Run { board, elf: &elf, blob: None, counter: Some(&counter), limit }.count().expect("it ends well");

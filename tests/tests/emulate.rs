@@ -20,7 +20,6 @@ use host_tools::builtin;
 use host_tools::emulate::counter::Counter;
 use host_tools::emulate::elf::Elf;
 use host_tools::emulate::firmware::{self, Wanted};
-use host_tools::emulate::machine::Machine;
 use host_tools::emulate::{EmulateError, Observer, Outcome, Run, room};
 use host_tools::engine;
 use host_tools::import::{Embedded, load_from};
@@ -29,7 +28,7 @@ use host_tools::picture::Picture;
 use host_tools::prepare::Options;
 use host_tools::render::Rendered;
 use tests::blobs;
-use tests::boards::boards;
+use tests::boards::{boards, counted};
 
 const LIMIT: Duration = Duration::from_secs(120);
 
@@ -106,6 +105,19 @@ fn pictures_are_the_hosts() {
     }
 }
 
+/// Where rays may not go on, the background shows in mirrors and glass, and what draws it is linked.
+#[test]
+fn without_depth_the_picture_is_the_hosts() {
+    let mut model = built_in();
+    model.render.max_depth = 0;
+    for board in boards() {
+        let blob = prepared(&model, "exact14");
+        let elf = wanted(board, &blob).provide().unwrap();
+        let (outcome, _) = run(&elf, board, &blob, None).unwrap();
+        assert_eq!(outcome.picture, host(&blob, "exact14").picture, "{}", board.name);
+    }
+}
+
 #[test]
 fn rays_and_tests_are_counted_as_on_the_host() {
     for board in boards() {
@@ -129,14 +141,7 @@ fn rays_and_tests_are_counted_as_on_the_host() {
 
 #[test]
 fn instructions_are_the_same_on_every_run() {
-    for board in boards() {
-        let counter = match Counter::provide(&Machine::of(board)) {
-            Ok(counter) => counter,
-            Err(reason) => {
-                println!("skipped {}: {reason}", board.name);
-                continue;
-            }
-        };
+    for (board, counter) in counted() {
         let counts = |model: &Model| {
             let blob = prepared(model, "exact14");
             let elf = wanted(board, &blob).provide().unwrap();

@@ -19,9 +19,7 @@ fn picture(engine: &dyn Engine, model: &Model) -> Picture {
 }
 
 fn truth(model: &Model) -> Picture {
-    let [width, height] = model.render.size;
-    let (pixels, _) = Reference::new(model).render([width, height], &|_| {});
-    Picture::from_fn(width, height, |x, y| pixels[(y * width + x) as usize])
+    Reference::new(model).picture(&|_| {})
 }
 
 /// Whether two surfaces lie in one place there: within 2^-26 of the distance, about what the 29-bit grid resolves.

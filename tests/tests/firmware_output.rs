@@ -18,7 +18,7 @@ use host_tools::emulate::{EmulateError, Run};
 use host_tools::engine;
 use host_tools::import::{Embedded, load_from};
 use host_tools::prepare::Options;
-use tests::boards::boards;
+use tests::boards::{boards, program};
 
 const LIMIT: Duration = Duration::from_secs(120);
 
@@ -32,22 +32,6 @@ fn blob(kernel: &str) -> Vec<u8> {
     model.render.size = [32, 24];
     let engine = engine::by_name(kernel).expect("a kernel of this name");
     engine.prepare(&model, &Options::default()).expect("it fits").blob.bytes().to_vec()
-}
-
-/// Firmware that does what its first word of the blob asks for.
-fn misbehaving(board: &Board) -> Elf {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
-    let target = std::path::absolute(target).expect("there is a current folder");
-    let name = board.package.replace("firmware", "misbehave");
-    let status = Command::new(env!("CARGO"))
-        .args(["build", "--quiet", "--profile", "firmware", "--package", board.package, "--bin", &name])
-        .args(["--target", board.target])
-        .env("CARGO_TARGET_DIR", &target)
-        .current_dir(&root)
-        .status();
-    assert!(status.expect("cargo can be started").success());
-    Elf::read(&target.join(board.target).join("firmware").join(name), board).expect("it was just built")
 }
 
 /// The text with what depends on the compiler's layout, and on time, replaced.
@@ -123,7 +107,7 @@ fn cases(board: &'static Board) -> Vec<(&'static str, String)> {
     let mut damaged = whole.clone();
     damaged[whole.len() / 2] ^= 1;
 
-    let elf = misbehaving(board);
+    let elf = program(board, "misbehave");
     let misbehaved = |asked: u32, status: Status| {
         let (text, error) = ended(board, &elf, &asked.to_le_bytes(), LIMIT);
         assert!(matches!(error, EmulateError::Firmware { status: found, .. } if found == status), "{error}");

@@ -29,9 +29,7 @@ fn picture(kernel: &str, model: &Model) -> Picture {
 }
 
 fn truth(model: &Model) -> Picture {
-    let [width, height] = model.render.size;
-    let (pixels, _) = Reference::new(model).render([width, height], &|_| {});
-    Picture::from_fn(width, height, |x, y| pixels[(y * width + x) as usize])
+    Reference::new(model).picture(&|_| {})
 }
 
 /// The indices of pixels that differ by more than 64.

@@ -32,9 +32,7 @@ fn scene(name: &str, size: [u32; 2]) -> Model {
 }
 
 fn truth(model: &Model) -> Picture {
-    let [width, height] = model.render.size;
-    let (pixels, _) = Reference::new(model).render([width, height], &|_| {});
-    Picture::from_fn(width, height, |x, y| pixels[(y * width + x) as usize])
+    Reference::new(model).picture(&|_| {})
 }
 
 fn picture(kernel: &str, model: &Model) -> Picture {

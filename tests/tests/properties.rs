@@ -3,6 +3,7 @@
 
 use glam::DVec3;
 use host_tools::engine::ENGINES;
+use host_tools::grid::LEAST_BITS;
 use host_tools::model::{
     Camera, Light, LightKind, Material, Model, Projection, RenderSettings, Sphere, Transfer, Triangle,
 };
@@ -103,10 +104,14 @@ proptest! {
         model in model(),
         leaf_max in 1u32..=64,
         leaf_always: bool,
+        grid_bits in prop::option::of(LEAST_BITS..=29),
     ) {
         let tree = TreeOptions { leaf_max, leaf_always, ..TreeOptions::default() };
         for engine in ENGINES {
-            let Ok(prepared) = engine.prepare(&model, &Options { tree, ..Options::default() }) else { continue };
+            let grid_bits = grid_bits.map(|bits| bits.min(engine.grid_bits()));
+            let options = Options { tree, grid_bits, ..Options::default() };
+            let Ok(prepared) = engine.prepare(&model, &options) else { continue };
+            prop_assert!(prepared.grid.bits(&model) <= grid_bits.unwrap_or(engine.grid_bits()));
             let (header, _) = engine.inspect(prepared.blob.bytes()).map_err(|e| TestCaseError::fail(e.to_string()))?;
             prop_assert_eq!(header.counts.triangles + prepared.degenerates.total(), model.triangles.len() as u32);
             prop_assert_eq!(header.counts.spheres + prepared.degenerates.spheres, model.spheres.len() as u32);

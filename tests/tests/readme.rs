@@ -98,8 +98,7 @@ fn the_readme_shows_what_the_program_makes() {
     for size in [[640, 480], [160, 128]] {
         let model = built_in(size);
         let [width, height] = size;
-        let (pixels, _) = Reference::new(&model).render(size, &|_| {});
-        let truth = Picture::from_fn(width, height, |x, y| pixels[(y * width + x) as usize]);
+        let truth = Reference::new(&model).picture(&|_| {});
         for engine in ENGINES {
             let blob = engine.prepare(&model, &Options::default()).expect("it fits").blob;
             let picture = engine.render(blob.bytes(), [32, 32], &|_| {}).expect("a blob just made").picture;

@@ -21,9 +21,7 @@ fn gallery(size: [u32; 2], filter: Filter) -> Model {
 }
 
 fn truth(model: &Model) -> Picture {
-    let [width, height] = model.render.size;
-    let (pixels, _) = Reference::new(model).render([width, height], &|_| {});
-    Picture::from_fn(width, height, |x, y| pixels[(y * width + x) as usize])
+    Reference::new(model).picture(&|_| {})
 }
 
 fn rendered(model: &Model, kernel: &str) -> Picture {

@@ -134,6 +134,8 @@ fn light_is_valid(light: &Light) -> bool {
 /// depend on the profile.
 fn used<K: Kernel>(header: &Header, shading: &Shading<'_, K>) -> Needs {
     let any_light = |kind| shading.lights.iter().any(|light| light.kind == kind);
+    // Where rays may not go on, the background is seen instead of what they would see.
+    let goes_on = header.max_depth > 0 || header.background.iter().any(|colour| !colour.is_black());
     Needs::NONE
         .with(Need::PointLight, any_light(Light::POINT))
         .with(Need::DirectionalLight, any_light(Light::DIRECTIONAL))
@@ -146,8 +148,8 @@ fn used<K: Kernel>(header: &Header, shading: &Shading<'_, K>) -> Needs {
         .with(Need::Supersampling, header.samples > 1)
         .with(Need::BlinnPhong, shading.lustres.iter().any(|l| !l.specular_is_black() && l.flags & Lustre::PHONG == 0))
         .with(Need::Phong, shading.lustres.iter().any(|l| !l.specular_is_black() && l.flags & Lustre::PHONG != 0))
-        .with(Need::Reflection, header.max_depth > 0 && shading.lustres.iter().any(|l| l.reflected != [0; 3]))
-        .with(Need::Refraction, header.max_depth > 0 && shading.lustres.iter().any(|l| l.refracted != [0; 3]))
+        .with(Need::Reflection, goes_on && shading.lustres.iter().any(|l| l.reflected != [0; 3]))
+        .with(Need::Refraction, goes_on && shading.lustres.iter().any(|l| l.refracted != [0; 3]))
         .with(Need::Schlick, shading.lustres.iter().any(|l| l.flags & (Lustre::FRESNEL | Lustre::METAL) != 0))
         .with(Need::TintedShadow, !shading.lights.is_empty() && shading.lustres.iter().any(|l| l.shadow != [0; 3]))
         .with(Need::Checker, !shading.checkers.is_empty())

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::failure::Failure;
-use super::input::Scene;
+use super::load::Scene;
 use super::{output, progress, render};
 use crate::compare::compare;
 use crate::engine::ENGINES;
@@ -26,7 +26,7 @@ pub(super) fn run() -> Result<(), Failure> {
     let mut rows = Vec::new();
     for engine in ENGINES {
         let prepared = engine.prepare(&model, &Options::default())?;
-        let scene = Scene { engine, blob: prepared.blob, degenerates: Some(prepared.degenerates) };
+        let scene = Scene { engine, blob: prepared.blob, degenerates: Some(prepared.degenerates), choice: None };
         let picture = render::picture(&scene)?.picture;
         let apart = compare(&picture, &reference)?;
         rows.push(format!(
@@ -63,10 +63,8 @@ pub(super) fn run() -> Result<(), Failure> {
 fn reference(model: &Model) -> Picture {
     let [width, height] = model.render.size;
     let bar = progress::bar("reference", u64::from(width) * u64::from(height));
-    let (pixels, _) = Reference::new(model).render([width, height], &|pixels| bar.inc(pixels));
+    let picture = Reference::new(model).picture(&|pixels| bar.inc(pixels));
     bar.finish_and_clear();
-    let mut picture = Picture::new(width, height);
-    picture.pixels_mut().copy_from_slice(&pixels);
     picture
 }
 

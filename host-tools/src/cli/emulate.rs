@@ -13,7 +13,8 @@ use indicatif::ProgressBar;
 use serde::Serialize;
 
 use super::failure::{Failure, warn};
-use super::input::{Scene, SceneArguments};
+use super::input::SceneArguments;
+use super::load::Scene;
 use super::{output, progress};
 use crate::emulate::breakdown::Breakdown;
 use crate::emulate::counter::{Counter, Counts};

@@ -6,13 +6,11 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::input::{Scene, SceneArguments, ThreadArguments};
+use super::input::{SceneArguments, ThreadArguments};
+use super::load::Scene;
 use super::{output, progress};
 use crate::files;
-use crate::render::Rendered;
-
-/// Tiles that threads take turns at. Small enough to share the work, large enough to be worth it.
-pub(super) const TILE: [u16; 2] = [32, 32];
+use crate::render::{Rendered, TILE};
 
 /// Render a scene to a PNG
 #[derive(Debug, clap::Args)]

@@ -43,7 +43,7 @@ use materials::Names;
 use obj::Mesh;
 
 pub use error::{ImportError, Warning};
-pub use setting::MOST_SAMPLES;
+pub use setting::{GREATEST_DEPTH, MOST_SAMPLES};
 pub use source::{Embedded, Folder, Source};
 
 use crate::model::Model;
@@ -68,6 +68,15 @@ pub struct Imported {
 /// # Errors
 /// Everything that [`ImportError`] lists.
 pub fn load(path: &Path) -> Result<Imported, ImportError> {
+    let (folder, name) = place(path)?;
+    load_from(&folder, name)
+}
+
+/// The folder that a scene file is in, and its name there.
+///
+/// # Errors
+/// Where it is a folder itself, or its name is not UTF-8.
+pub fn place(path: &Path) -> Result<(Folder, &str), ImportError> {
     let file = error::printable(&path.to_string_lossy());
     if path.is_dir() {
         return Err(ImportError::unreadable(&file, io::ErrorKind::IsADirectory.into()));
@@ -77,8 +86,7 @@ pub fn load(path: &Path) -> Result<Imported, ImportError> {
         let error = io::Error::new(io::ErrorKind::InvalidInput, message);
         return Err(ImportError::unreadable(&file, error));
     };
-    let folder = path.parent().unwrap_or(Path::new(""));
-    load_from(&Folder(folder.into()), name)
+    Ok((Folder(path.parent().unwrap_or(Path::new("")).into()), name))
 }
 
 /// Imports the scene `name` of a [`Source`].

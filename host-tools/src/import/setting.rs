@@ -14,7 +14,7 @@ use crate::picture::{SIZES, size_is_allowed};
 /// Camera rays a pixel at most.
 pub const MOST_SAMPLES: u32 = MAX_SAMPLES as u32;
 /// Reflections and refractions of a ray at most.
-const GREATEST_DEPTH: u32 = 64;
+pub const GREATEST_DEPTH: u32 = 64;
 
 impl Document {
     /// The lights; where there are none, a white one at the camera.

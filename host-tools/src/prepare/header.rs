@@ -92,8 +92,10 @@ pub(super) fn background(model: &Model) -> [Radiance; 2] {
 pub(super) fn needs(model: &Model, materials: &[Material], lustres: &[Lustre]) -> Needs {
     let shines =
         |phong: bool| lustres.iter().any(|l| !l.specular_is_black() && (l.flags & Lustre::PHONG != 0) == phong);
-    let goes_on = |colour: fn(&Lustre) -> Albedo| max_depth(model) > 0 && lustres.iter().any(|l| colour(l) != [0; 3]);
     let [bottom, top] = background(model);
+    // Where rays may not go on, the background is seen instead of what they would see.
+    let is_seen = max_depth(model) > 0 || !bottom.is_black() || !top.is_black();
+    let goes_on = |colour: fn(&Lustre) -> Albedo| is_seen && lustres.iter().any(|l| colour(l) != [0; 3]);
     let fades = |light: &model::Light| {
         matches!((light.kind, light.falloff), (LightKind::Point(_), Falloff::InverseSquare { .. }))
     };

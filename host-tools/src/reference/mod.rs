@@ -60,10 +60,13 @@ mod triangle;
 
 use std::ops::ControlFlow;
 
+use core_rt::kernel::NONE;
 use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::model::Model;
+use crate::picture::Picture;
+use crate::witness::Seen;
 use bvh::Bvh;
 use camera::View;
 use ray::Ray;
@@ -171,23 +174,39 @@ impl<'m> Reference<'m> {
     /// Linear RGB in [0, 1] of pixel `(x, y)` of a picture of `size`: the mean of the scene's number of samples, each
     /// clamped, as the picture's is in the end.
     pub fn pixel_colour(&self, size: [u32; 2], x: u32, y: u32) -> DVec3 {
+        self.pixel_witness(size, x, y).0
+    }
+
+    /// The same, and what the rays behind it saw.
+    fn pixel_witness(&self, size: [u32; 2], x: u32, y: u32) -> (DVec3, Seen) {
         let samples = self.model.render.samples.max(1);
-        let sum: DVec3 = pattern::points(samples)
-            .map(|[right, down]| {
+        let mut seen = Seen::default();
+        let sum: DVec3 = (0..)
+            .zip(pattern::points(samples))
+            .map(|(number, [right, down])| {
                 let (origin, direction) = self.camera_ray(size, f64::from(x) + right, f64::from(y) + down);
-                self.sample(origin, direction).colour.clamp(DVec3::ZERO, DVec3::ONE)
+                let colour = self.sample_witness(origin, direction, number, &mut seen).colour;
+                colour.clamp(DVec3::ZERO, DVec3::ONE)
             })
             .sum();
-        sum / f64::from(samples)
+        (sum / f64::from(samples), seen)
     }
 
     /// What a ray sees.
     pub fn sample(&self, origin: DVec3, direction: DVec3) -> Sample {
+        self.sample_witness(origin, direction, 0, &mut Seen::default())
+    }
+
+    /// What the camera ray of a pixel's sample sees, by the sample's number.
+    fn sample_witness(&self, origin: DVec3, direction: DVec3, number: u32, seen: &mut Seen) -> Sample {
         let ray = Ray::new(origin, direction);
-        match self.closest(&ray, Shape::intersect) {
+        let bounce = Bounce::first(number);
+        let nearest = self.closest(&ray, Shape::intersect);
+        seen.surface(bounce.place, nearest.map_or(NONE, |(_, prim)| prim));
+        match nearest {
             Some((crossing, prim)) => {
                 let surface = self.surface(&ray, crossing, prim);
-                let (colour, lights) = self.shade(&surface, Bounce::FIRST);
+                let (colour, lights) = self.shade(&surface, bounce, seen);
                 Sample {
                     colour,
                     hit: Some(Hit::new(&ray, crossing, prim)),
@@ -209,18 +228,41 @@ impl<'m> Reference<'m> {
     /// The picture of `size` (width, height) as RGB bytes, and the nearest hits at the centres of pixels, both row by row
     /// from the top. `progress` is called by any thread with the number of pixels it has just finished.
     pub fn render(&self, size: [u32; 2], progress: &(dyn Fn(u64) + Sync)) -> (Vec<[u8; 3]>, Vec<Option<Hit>>) {
+        self.each(size, progress, |x, y| {
+            let centre = self.pixel(size, x, y);
+            let is_one = self.model.render.samples <= 1;
+            let colour = if is_one { centre.colour } else { self.pixel_colour(size, x, y) };
+            (encode(colour, self.model.render.transfer), centre.hit)
+        })
+    }
+
+    /// The picture in the scene's own size.
+    pub fn picture(&self, progress: &(dyn Fn(u64) + Sync)) -> Picture {
+        let [width, height] = self.model.render.size;
+        let (pixels, _) = self.render([width, height], progress);
+        Picture::from_fn(width, height, |x, y| pixels[(y * width + x) as usize])
+    }
+
+    /// The picture, and what the rays behind each pixel saw, in the same order.
+    pub fn witness(&self, size: [u32; 2], progress: &(dyn Fn(u64) + Sync)) -> (Vec<[u8; 3]>, Vec<Seen>) {
+        self.each(size, progress, |x, y| {
+            let (colour, seen) = self.pixel_witness(size, x, y);
+            (encode(colour, self.model.render.transfer), seen)
+        })
+    }
+
+    /// What `pixel` gives for each pixel, row by row from the top.
+    fn each<T: Send>(
+        &self,
+        size: [u32; 2],
+        progress: &(dyn Fn(u64) + Sync),
+        pixel: impl Fn(u32, u32) -> ([u8; 3], T) + Sync,
+    ) -> (Vec<[u8; 3]>, Vec<T>) {
         let [width, height] = size;
         (0..height)
             .into_par_iter()
             .flat_map_iter(|y| {
-                let row: Vec<_> = (0..width)
-                    .map(|x| {
-                        let centre = self.pixel(size, x, y);
-                        let is_one = self.model.render.samples <= 1;
-                        let colour = if is_one { centre.colour } else { self.pixel_colour(size, x, y) };
-                        (encode(colour, self.model.render.transfer), centre.hit)
-                    })
-                    .collect();
+                let row: Vec<_> = (0..width).map(|x| pixel(x, y)).collect();
                 progress(u64::from(width));
                 row
             })

@@ -11,6 +11,7 @@ use super::shape::Shape;
 use super::surface::Surface;
 use super::trace::Bounce;
 use crate::model::{Background, Falloff, Light, LightKind, Lobe, Material, MaterialKind, Specular};
+use crate::witness::{Place, Seen};
 
 /// The nearest that a light of inverse-square falloff gets, as a part of its reach: at most 256 times as bright as there.
 const NEAREST: f64 = 1.0 / 16.0;
@@ -37,25 +38,30 @@ struct Lit {
 
 impl Reference<'_> {
     /// What the ray that met `surface` brings, linear RGB, and the lights that contribute there.
-    pub(super) fn shade(&self, surface: &Surface<'_>, bounce: Bounce) -> (DVec3, u64) {
+    pub(super) fn shade(&self, surface: &Surface<'_>, bounce: Bounce, seen: &mut Seen) -> (DVec3, u64) {
         let material = surface.material;
         let refracted = surface.refracted();
         let weights = surface.weights(refracted);
         let towards_white = |colour: DVec3| colour + (DVec3::ONE - colour) * weights.whiteness;
 
         let lit = self.lit(surface, &weights);
+        // What gives nothing back need not be lit, and others do not look for lights there.
+        if surface.albedo * weights.diffuse != DVec3::ZERO || weights.specular > 0.0 {
+            (0..u64::BITS).filter(|i| lit.lights >> i & 1 != 0).for_each(|i| seen.light(bounce.place, i));
+        }
         let mut colour = material.emission + surface.albedo * lit.diffuse * weights.diffuse;
         if let Some(specular) = &material.specular {
             colour += towards_white(specular.colour) * lit.specular * weights.specular;
         }
-        let mut follow = |direction: DVec3, weight: DVec3| {
-            if let Some(next) = bounce.next(weight) {
-                colour += weight * self.trace(surface, direction, next);
+        let mut follow = |place: Place, direction: DVec3, weight: DVec3| {
+            if let Some(next) = bounce.next(place, weight) {
+                colour += weight * self.trace(surface, direction, next, seen);
             }
         };
-        follow(surface.reflected(), towards_white(reflection_tint(material)) * weights.reflected);
+        let mirrored = towards_white(reflection_tint(material)) * weights.reflected;
+        follow(bounce.place.mirrored(), surface.reflected(), mirrored);
         if let Some(direction) = refracted {
-            follow(direction, transmission_tint(material) * weights.refracted);
+            follow(bounce.place.refracted(), direction, transmission_tint(material) * weights.refracted);
         }
         (colour, lit.lights)
     }

@@ -3,6 +3,9 @@
 //! Rows are what is stored, and all that the page, the CSV and the JSON are made from: a page can be made anew without
 //! measuring anything. Pictures stand beside them as files.
 
+use std::fmt::{self, Display, Formatter};
+
+use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 
 use crate::compare::Comparison;
@@ -11,7 +14,7 @@ use crate::compare::Comparison;
 pub const SCHEMA: &str = "intray-report/1";
 
 /// Where a picture is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Machine {
     /// This computer, one thread; its cost is a time, as a ratio to f32's in the same run.
@@ -23,7 +26,7 @@ pub enum Machine {
 }
 
 /// What is varied: points of one study and scene make one series of a plot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum Study {
     /// Every kernel as it comes.
@@ -73,6 +76,42 @@ pub struct Point {
     pub triangles: Option<u32>,
     /// C, D and E of the 2009 report, where they are set.
     pub knobs: [Option<u8>; 3],
+}
+
+/// For messages: kernel, machine, scene and what is varied.
+impl Display for Point {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Self { scene, study, kernel, machine, size: [width, height], samples, depth, .. } = self;
+        write!(f, "{scene} by {kernel} on {} ({}, ", name(machine), name(study))?;
+        write!(f, "{width}x{height}, {samples} samples, depth {depth}")?;
+        for (name, value) in self.set() {
+            write!(f, ", {name} {value}")?;
+        }
+        f.write_str(")")
+    }
+}
+
+impl Point {
+    /// The names and values of what is not as it comes.
+    pub fn set(&self) -> impl Iterator<Item = (&'static str, u32)> {
+        let [c, d, e] = self.knobs.map(|knob| knob.map(u32::from));
+        let all = [
+            ("leaf", self.leaf),
+            ("grid", self.grid_bits),
+            ("triangles", self.triangles),
+            ("c", c),
+            ("d", d),
+            ("e", e),
+        ];
+        all.into_iter().filter_map(|(name, value)| Some((name, value?)))
+    }
+}
+
+/// The name of a study or a machine, as on the command line and in JSON.
+#[must_use]
+pub fn name(value: &impl ValueEnum) -> String {
+    // No value is hidden.
+    value.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
 }
 
 /// A point and what came of it.

@@ -126,8 +126,10 @@ fn for_something_else_than_was_asked() {
     let options = [
         "--size 7x4",
         "--samples 4",
+        "--depth 3",
         "--format gray8",
         "--leaf 2",
+        "--grid-bits 10",
         "--triangles 1",
         "--edge-shift 10",
         "--texture-size 8",
@@ -136,8 +138,9 @@ fn for_something_else_than_was_asked() {
     for option in options {
         folder.refuses(
             &format!("render scene.blob {option} -o out.png"),
-            "error: scene.blob: the blob is for 6x4 pixels, and its tree is built; --size, --samples, --format, --leaf, \
-             --triangles, --texture-size, --texels and the knobs of its arithmetic need the scene that it was made from\n",
+            "error: scene.blob: the blob is for 6x4 pixels, and its tree is built; --size, --samples, --depth, --format, \
+             --leaf, --grid-bits, --triangles, --texture-size, --texels and the knobs of its arithmetic need the scene that \
+             it was made from\n",
         );
     }
 }

@@ -50,7 +50,7 @@ fn render() {
 #[test]
 fn inspect() {
     let folder = folder();
-    folder.succeeds("prep scene.toml -o scene.blob", "");
+    folder.succeeds("prep scene.toml --kernel exact29 -o scene.blob", "");
     let of_scene = object(&folder, "inspect scene.toml --json");
     let mut of_blob = object(&folder, "inspect scene.blob --json");
     let stated =

@@ -139,3 +139,47 @@ fn nothing_is_left_but_another_kernel_keeps_it() {
         );
     }
 }
+
+#[test]
+fn grids_that_the_kernel_has_not() {
+    let folder = folder(&obj(1, 0), WITHIN);
+    for (kernel, bits, most) in [("exact14", 16, 15), ("exact29", 30, 29), ("exact29", 7, 29), ("f32", 25, 24)] {
+        folder.refuses(
+            &format!("prep scene.toml --kernel {kernel} --grid-bits {bits} -o out.blob"),
+            &format!("error: scene.toml: a grid of {bits} bits; {kernel} has grids of 8 to {most}\n"),
+        );
+    }
+}
+
+#[test]
+fn budgets_that_are_none() {
+    let folder = folder(&obj(1, 0), WITHIN);
+    for (text, wrong) in [("over_4>3", "over_4>3"), ("flip<1,over_5<1", "over_5<1"), ("psnr>40@0x0", "psnr>40@0x0")] {
+        let output = folder.run(&format!("prep scene.toml --budget {text} -o out.blob"));
+        assert_eq!(output.status.code(), Some(2));
+        let message = format!("`{wrong}` is no bound; it is a measure, `<`, `<=`, `>` or `>=`, a number");
+        assert!(crate::command::text(&output.stderr).contains(&message), "{text}");
+    }
+    folder.refuses(
+        "prep scene.toml --budget over_4<3@8x8 --size 9x8 -o out.blob",
+        "error: --size is 9x8, and the budget is for 8x8; leave one out\n",
+    );
+    let output = folder.run("prep scene.toml --budget over_4<3 --kernel exact14 -o out.blob");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(crate::command::text(&output.stderr).contains("cannot be used with"));
+    assert_eq!(folder.contents().len(), 3, "nothing was written");
+}
+
+/// A scene that no kernel draws without a pixel's difference, as the light comes at an angle that none has.
+#[test]
+fn a_budget_that_no_kernel_stays_inside() {
+    let scene = format!("{WITHIN}[[light]]\nkind = 'directional'\ndirection = [0.3, -0.8, 0.1]\nintensity = 0.7\n");
+    let folder = folder(&obj(40, 0), &scene);
+    let output = folder.run("prep scene.toml --budget flip<0 -o out.blob");
+    let errors = crate::command::text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{errors}");
+    let tried: Vec<&str> = errors.lines().filter_map(|line| line.split_whitespace().next()).collect();
+    assert_eq!(tried, ["exact14", "exact20", "exact29", "error:"], "{errors}");
+    assert!(errors.contains("error: scene.toml: no kernel stays inside the budget; the closest: exact29"), "{errors}");
+    assert_eq!(folder.contents().len(), 3, "nothing was written");
+}

@@ -12,6 +12,7 @@ mod kernels;
 mod outputs;
 mod pictures;
 mod rays;
+mod report;
 mod scene_files;
 mod scene_toml;
 mod spheres;

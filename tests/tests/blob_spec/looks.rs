@@ -39,7 +39,12 @@ pub(crate) fn needs(blob: &Blob, model: &Model) -> u32 {
         used(model)
             .any(|m| m.specular.is_some_and(|s| s.lobe == lobe && s.colour != DVec3::ZERO && weights(m)[1] > 0.0))
     };
-    let goes_on = blob.header.max_depth > 0;
+    let is_dark = |colour: DVec3| colour == DVec3::ZERO;
+    let is_dark = match model.background {
+        Background::Colour(colour) => is_dark(colour),
+        Background::Sky { bottom, top } => is_dark(bottom) && is_dark(top),
+    };
+    let goes_on = blob.header.max_depth > 0 || !is_dark;
     let fades =
         |light: &host_tools::model::Light| matches!(light.kind, LightKind::Point(_)) && light.falloff != Falloff::None;
     let schlick = used(model).any(|m| is(MaterialKind::Dielectric, m) || is(MaterialKind::Metal, m));

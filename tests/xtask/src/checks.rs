@@ -8,7 +8,7 @@ use crate::fuzz;
 use crate::qemu::QEMU;
 use crate::steps::Step;
 use crate::task::Task;
-use crate::tool::{CARGO_FUZZ, CLIPPY, IMAGEMAGICK, NIGHTLY, RISCV32IMAC, RUSTFMT, THUMBV6M, Tool};
+use crate::tool::{CARGO_FUZZ, CHROMIUM, CLIPPY, IMAGEMAGICK, NIGHTLY, RISCV32IMAC, RUSTFMT, THUMBV6M, Tool};
 
 /// Seconds of fuzzing a target.
 const FUZZ_SECONDS: u32 = 20;
@@ -60,6 +60,11 @@ pub(crate) fn steps(long: bool) -> Vec<Step> {
         Step::new("goldens, debug", Task::new("cargo test -p tests --test goldens")),
         Step::new("ImageMagick's counts", Task::new("cargo test -p tests --profile checked --test imagemagick"))
             .needing(&[IMAGEMAGICK]),
+        Step::new(
+            "the report's page in a browser",
+            Task::new("cargo test -p tests --profile checked --test report_page"),
+        )
+        .needing(&[CHROMIUM]),
         Step::new("instruction counts", Task::new("cargo test -p tests --profile checked --test qemu_plugin"))
             .needing(&[QEMU]),
         Step::new("all of tests, optimised and overflow-checked", test("cargo test -p tests --profile checked")),

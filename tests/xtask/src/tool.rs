@@ -93,6 +93,19 @@ pub(crate) const IMAGEMAGICK: Tool = Tool {
     },
 };
 
+/// The browser that a report's page is opened in.
+pub(crate) const CHROMIUM: Tool = Tool {
+    name: "Chromium",
+    hint: "apt-get install chromium",
+    is_present: || {
+        ["chromium", "chromium-browser", "google-chrome"].iter().any(|name| succeeds(&format!("{name} --version")))
+    },
+    install: || {
+        apt("chromium");
+        Ok(())
+    },
+};
+
 /// What libFuzzer's instrumentation needs. Never installed unasked: it is a second compiler.
 pub(crate) const NIGHTLY: Tool = Tool {
     name: "nightly Rust",
