@@ -191,7 +191,7 @@ pub trait Kernel: Copy + Debug + Default + Send + Sync + 'static {
     fn octant(path: &Self::Path) -> usize;
     /// The limit beyond which nothing counts.
     fn reach(ray: &Self::Ray, path: &Self::Path) -> Self::Distance;
-    /// Where a ray of an octant (or [`ANY_OCTANT`]) enters a child of a node, 0 or 1, if it does before `limit`. Conservative: a child that holds a
+    /// Where a ray of its [octant](Kernel::octant) (or, of a kernel that has no rays without one, [`ANY_OCTANT`]) enters a child of a node, 0 or 1, if it does before `limit`. Conservative: a child that holds a
     /// triangle whose hit is not beyond `limit` is never left out, but for `hanika-c` and `hanika-cd`, which reproduce a
     /// test that does. The octant is a constant, so that near and far planes are chosen when the code is compiled.
     fn enter<const OCTANT: usize>(
