@@ -6,7 +6,6 @@
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::time::Duration;
 
 use firmware_rt::board::{BOARDS, Board};
