@@ -10,10 +10,11 @@
 //! does not depend on the order of the visit, and nothing is pruned at equal t.
 
 use core::cmp::Ordering;
+use core::num::NonZeroU32;
 
 use heapless::VecView;
 
-use crate::kernel::{Bounds, Kernel, NONE};
+use crate::kernel::{ANY_OCTANT, Bounds, Kernel, NONE};
 use crate::profile::{Need, Profile};
 use crate::section::Integers;
 use crate::stats::Stats;
@@ -84,13 +85,14 @@ pub trait Intersect<K: Kernel> {
         stats: &mut impl Stats,
     ) {
         for (ray, hit) in rays.zip(hits) {
-            *hit = ray.map_or(NONE, |ray| self.closest(&ray, stack, stats));
+            *hit = ray.as_ref().map_or(NONE, |ray| self.closest(ray, stack, stats));
         }
     }
 }
 
 type RayOf<P> = <<P as Profile>::Kernel as Kernel>::Ray;
 type DepthOf<P> = <<P as Profile>::Kernel as Kernel>::Depth;
+type PathOf<P> = <<P as Profile>::Kernel as Kernel>::Path;
 type DistanceOf<P> = <<P as Profile>::Kernel as Kernel>::Distance;
 
 /// What a leaf holds.
@@ -149,15 +151,17 @@ impl<'a, P: Profile> Bvh<'a, P> {
     fn walk(
         &self,
         ray: &RayOf<P>,
+        path: &PathOf<P>,
         stack: &mut Stack<P::Kernel>,
         stats: &mut impl Stats,
         mut visit: impl FnMut(u32, Primitive<'_, P::Kernel>) -> Option<DistanceOf<P>>,
     ) {
-        let mut limit = P::Kernel::reach(ray);
-        let (skip, octant) = (P::Kernel::skip(ray), P::Kernel::octant(ray));
+        let mut limit = P::Kernel::reach(ray, path);
+        let (skip, octant) = (P::Kernel::skip(ray), P::Kernel::octant(path));
         let mut next = Some(self.root);
         stack.clear();
-        while let Some((first, count)) = next.and_then(|child| self.leaf(octant, ray, child, limit, stack, stats)) {
+        while let Some(leaf) = next.and_then(|child| self.leaf(octant, path, child, limit, stack, stats)) {
+            let Child::Leaf { first, count } = Child::unpack(leaf.get()) else { return };
             if P::NEEDS.has(Need::Spheres)
                 && let Some(first_sphere) = (first as usize).checked_sub(self.triangles.len())
             {
@@ -186,58 +190,64 @@ impl<'a, P: Profile> Bvh<'a, P> {
         }
     }
 
-    /// The first leaf at or below `child`, or below what waits, that the ray enters before the limit: its first primitive
-    /// and their count. One copy an octant, of the descent alone: it is most of the work and little code.
+    /// The first leaf at or below `child`, or below what waits, that the ray enters before the limit, packed: a leaf is not
+    /// word 0. One copy an octant, of the descent alone: it is most of the work and little code.
     #[inline(always)]
     fn leaf(
         &self,
         octant: usize,
-        ray: &RayOf<P>,
+        path: &PathOf<P>,
         child: u32,
         limit: DistanceOf<P>,
         stack: &mut Stack<P::Kernel>,
         stats: &mut impl Stats,
-    ) -> Option<(u32, u32)> {
+    ) -> Option<NonZeroU32> {
         match octant {
-            0 => self.leaf_in::<0>(ray, child, limit, stack, stats),
-            1 => self.leaf_in::<1>(ray, child, limit, stack, stats),
-            2 => self.leaf_in::<2>(ray, child, limit, stack, stats),
-            3 => self.leaf_in::<3>(ray, child, limit, stack, stats),
-            4 => self.leaf_in::<4>(ray, child, limit, stack, stats),
-            5 => self.leaf_in::<5>(ray, child, limit, stack, stats),
-            6 => self.leaf_in::<6>(ray, child, limit, stack, stats),
-            _ => self.leaf_in::<7>(ray, child, limit, stack, stats),
+            0 => self.leaf_in::<0>(path, child, limit, stack, stats),
+            1 => self.leaf_in::<1>(path, child, limit, stack, stats),
+            2 => self.leaf_in::<2>(path, child, limit, stack, stats),
+            3 => self.leaf_in::<3>(path, child, limit, stack, stats),
+            4 => self.leaf_in::<4>(path, child, limit, stack, stats),
+            5 => self.leaf_in::<5>(path, child, limit, stack, stats),
+            6 => self.leaf_in::<6>(path, child, limit, stack, stats),
+            ANY_OCTANT if P::Kernel::ANY_OCTANT => self.leaf_in::<ANY_OCTANT>(path, child, limit, stack, stats),
+            _ => self.leaf_in::<7>(path, child, limit, stack, stats),
         }
     }
 
     #[inline(never)]
     fn leaf_in<const OCTANT: usize>(
         &self,
-        ray: &RayOf<P>,
+        path: &PathOf<P>,
         mut child: u32,
         limit: DistanceOf<P>,
         stack: &mut Stack<P::Kernel>,
         stats: &mut impl Stats,
-    ) -> Option<(u32, u32)> {
+    ) -> Option<NonZeroU32> {
         loop {
             let index = match Child::unpack(child) {
-                Child::Leaf { first, count } => return Some((first, count)),
+                Child::Leaf { .. } => return NonZeroU32::new(child),
                 Child::Node(index) => index,
             };
             // A checked scene has the node; an end without it is what a traversal of nothing is.
             let node = self.nodes.get(index as usize)?;
             stats.boxes(2);
             let [first, second] = P::Kernel::children(node);
-            child = match P::Kernel::enter::<OCTANT>(ray, node, limit) {
-                [Some(a), Some(b)] => {
+            // The second test stands here twice: the code knows of the first what it found, and keeps no flag.
+            let enter = |child| P::Kernel::enter::<OCTANT>(path, node, child, limit);
+            child = if let Some(a) = enter(0) {
+                if let Some(b) = enter(1) {
                     let (near, far) = if b < a { (second, (first, a)) } else { (first, (second, b)) };
                     // A checked tree is no deeper than the stack.
                     let _ = stack.push(far);
                     near
+                } else {
+                    first
                 }
-                [Some(_), None] => first,
-                [None, Some(_)] => second,
-                [None, None] => waiting::<P::Kernel>(stack, limit)?,
+            } else if enter(1).is_some() {
+                second
+            } else {
+                waiting::<P::Kernel>(stack, limit)?
             };
         }
     }
@@ -255,11 +265,13 @@ fn waiting<K: Kernel>(stack: &mut Stack<K>, limit: K::Distance) -> Option<u32> {
 }
 
 impl<P: Profile> Intersect<P::Kernel> for Bvh<'_, P> {
+    #[inline(never)]
     fn closest(&self, ray: &RayOf<P>, stack: &mut Stack<P::Kernel>, stats: &mut impl Stats) -> u32 {
         let mut best: Option<DepthOf<P>> = None;
         let mut hit = NONE;
-        let mut limit = P::Kernel::reach(ray);
-        self.walk(ray, stack, stats, |index, primitive| {
+        let path = P::Kernel::path(ray);
+        let mut limit = P::Kernel::reach(ray, &path);
+        self.walk(ray, &path, stack, stats, |index, primitive| {
             if let Some(depth) = primitive.intersect(ray) {
                 let nearer = match &best {
                     None => true,
@@ -270,7 +282,7 @@ impl<P: Profile> Intersect<P::Kernel> for Bvh<'_, P> {
                     },
                 };
                 if nearer {
-                    limit = P::Kernel::limit(&depth);
+                    limit = P::Kernel::limit(&path, &depth);
                     best = Some(depth);
                     hit = index;
                 }
@@ -288,8 +300,9 @@ impl<P: Profile> Intersect<P::Kernel> for Bvh<'_, P> {
         mut blocks: impl FnMut(u32) -> bool,
     ) -> bool {
         let mut hit = false;
-        let limit = P::Kernel::reach(ray);
-        self.walk(ray, stack, stats, |index, primitive| {
+        let path = P::Kernel::path(ray);
+        let limit = P::Kernel::reach(ray, &path);
+        self.walk(ray, &path, stack, stats, |index, primitive| {
             hit = primitive.intersect(ray).is_some() && blocks(index);
             (!hit).then_some(limit)
         });

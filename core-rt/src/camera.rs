@@ -9,7 +9,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::kernel::{Bounds, Kernel};
-use crate::num::{Triple, Word, round_shift};
+use crate::num::{Triple, Word};
 use crate::samples::{PLACE_BITS, Place};
 
 /// A camera as it stands in the header, for every kernel.
@@ -101,6 +101,7 @@ fn sum_2x(a: i64, b: i64, c: i64, (x, y): (i64, i64)) -> Option<i64> {
 pub struct Camera<W> {
     eye: Triple<W>,
     along: Triple<W>,
+    /// With the half unit that rounds.
     first: Triple<W>,
     right: Triple<W>,
     down: Triple<W>,
@@ -134,10 +135,11 @@ impl<W: Word> Camera<W> {
             return None;
         }
         let words = |v: &Triple<i64>| Some([W::from_i64(v[0])?, W::from_i64(v[1])?, W::from_i64(v[2])?]);
+        let rounded = |c: i64| c + half; // of the sums' bound
         Some(Self {
             eye: header.eye.map(W::from_i32),
             along: header.along.map(W::from_i32),
-            first: words(&header.first)?,
+            first: words(&header.first.map(rounded))?,
             right: words(&header.right)?,
             down: words(&header.down)?,
             fraction_bits,
@@ -156,7 +158,7 @@ impl<W: Word> Camera<W> {
     #[must_use]
     pub fn direction(&self, x: u16, y: u16) -> Triple<W> {
         let (x, y) = (W::from_i32(x.into()), W::from_i32(y.into()));
-        let component = |a: W, b: W, c: W| round_shift(a + (x * b + y * c), self.fraction_bits);
+        let component = |a: W, b: W, c: W| (a + (x * b + y * c)) >> self.fraction_bits;
         [
             component(self.first[0], self.right[0], self.down[0]),
             component(self.first[1], self.right[1], self.down[1]),

@@ -127,8 +127,10 @@ pub trait Kernel: Copy + Debug + Default + Send + Sync + 'static {
     type Triangle: Record;
     /// A sphere.
     type Sphere: Record;
-    /// A ray, prepared.
+    /// A ray.
     type Ray: Copy + Debug;
+    /// What the box test needs of a ray, worked out once a traversal.
+    type Path: Copy + Debug;
     /// A lower bound of the distance at which a ray enters a box.
     type Distance: Copy + Debug + PartialOrd + Send;
     /// Where a ray hits a triangle or a sphere, exactly (as exactly as the kernel knows).
@@ -180,25 +182,31 @@ pub trait Kernel: Copy + Debug + Default + Send + Sync + 'static {
 
     /// The primitive that a ray starts on, or [`NONE`].
     fn skip(ray: &Self::Ray) -> u32;
-    /// Which way a ray goes: bit a is set where it moves down along axis a. Below 8.
-    fn octant(ray: &Self::Ray) -> usize;
-    /// The distance beyond which nothing counts.
-    fn reach(ray: &Self::Ray) -> Self::Distance;
-    /// Where a ray of an octant (or [`ANY_OCTANT`]) enters each child of a node, if it does before `limit`. Conservative: a child that holds a
+    /// The ray, prepared for boxes.
+    fn path(ray: &Self::Ray) -> Self::Path;
+    /// Whether [`Kernel::octant`] may be [`ANY_OCTANT`], so that the descent is compiled for it too.
+    const ANY_OCTANT: bool = false;
+    /// Which way a ray goes: bit a is set where it moves down along axis a. [`ANY_OCTANT`] for a ray whose boxes are tested
+    /// in the way that serves all.
+    fn octant(path: &Self::Path) -> usize;
+    /// The limit beyond which nothing counts.
+    fn reach(ray: &Self::Ray, path: &Self::Path) -> Self::Distance;
+    /// Where a ray of its [octant](Kernel::octant) (or, of a kernel that has no rays without one, [`ANY_OCTANT`]) enters a child of a node, 0 or 1, if it does before `limit`. Conservative: a child that holds a
     /// triangle whose hit is not beyond `limit` is never left out, but for `hanika-c` and `hanika-cd`, which reproduce a
     /// test that does. The octant is a constant, so that near and far planes are chosen when the code is compiled.
     fn enter<const OCTANT: usize>(
-        ray: &Self::Ray,
+        path: &Self::Path,
         node: &Self::Node,
+        child: usize,
         limit: Self::Distance,
-    ) -> [Option<Self::Distance>; 2];
+    ) -> Option<Self::Distance>;
     /// Where a ray hits a triangle, if it does within its reach. Edges belong to both neighbours.
     fn intersect(ray: &Self::Ray, triangle: &Self::Triangle) -> Option<Self::Depth>;
     /// Where a ray hits a sphere, if it does within its reach; a tangent does. `leaves` says that the ray starts on it, off it
     /// on one side: then it hits it at most once more, and only from inside.
     fn intersect_sphere(ray: &Self::Ray, sphere: &Self::Sphere, leaves: bool) -> Option<Self::Depth>;
-    /// A limit for [`Kernel::enter`] that leaves out nothing at or before `depth`.
-    fn limit(depth: &Self::Depth) -> Self::Distance;
+    /// A limit for [`Kernel::enter`] that leaves out nothing at or before `depth`, a hit of the ray.
+    fn limit(path: &Self::Path, depth: &Self::Depth) -> Self::Distance;
     /// The order of two hits of one ray.
     fn order(a: &Self::Depth, b: &Self::Depth) -> Ordering;
     /// Whether a box that is entered at `entry` may hold something not beyond `limit`.

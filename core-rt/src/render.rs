@@ -35,8 +35,21 @@ impl Tile {
 
     /// Column and row in the picture of each pixel, row by row.
     pub fn places(&self) -> impl Iterator<Item = [u16; 2]> + Clone {
-        let columns = self.x..self.x.saturating_add(self.width);
-        (self.y..self.y.saturating_add(self.height)).flat_map(move |y| columns.clone().map(move |x| [x, y]))
+        let (left, right) = (self.x, self.x.saturating_add(self.width));
+        let bottom = if left < right { self.y.saturating_add(self.height) } else { 0 };
+        // Two counters: a nested iterator would keep four, and ask more.
+        let (mut x, mut y) = (left, self.y);
+        core::iter::from_fn(move || {
+            let place = [x, y];
+            if y >= bottom {
+                return None;
+            }
+            x += 1;
+            if x == right {
+                (x, y) = (left, y + 1);
+            }
+            Some(place)
+        })
     }
 
     /// The tiles of a picture, row by row; those at the right and at the bottom are cut to fit. None where a size is 0.
@@ -180,7 +193,7 @@ pub fn render_tile<'w, P: Profile>(
             let again = rays.clone();
             scene.bvh.closest_tile(rays.by_ref().take(room), hits, stack, stats);
             for (&hit, ray) in hits.iter().zip(again) {
-                sum = sum.plus(seen(scene, ray, hit, stack, branches, stats).clamped());
+                sum = sum.plus(seen(scene, ray.as_ref(), hit, stack, branches, stats).clamped());
                 taken += 1;
                 if taken == samples {
                     if let Some((pixel, place)) = shown.next() {
@@ -194,7 +207,8 @@ pub fn render_tile<'w, P: Profile>(
         let ray = |[x, y]: [u16; 2]| scene.primary(&scene.camera, x, y);
         scene.bvh.closest_tile(places.clone().map(ray), hits, stack, stats);
         for ((pixel, &hit), place) in pixels.chunks_exact_mut(format.bytes()).zip(&*hits).zip(places) {
-            format.put(seen(scene, ray(place), hit, stack, branches, stats), transfer, place, pixel);
+            let seen = seen(scene, ray(place).as_ref(), hit, stack, branches, stats);
+            format.put(seen, transfer, place, pixel);
         }
     }
     Ok(pixels)
@@ -204,7 +218,7 @@ pub fn render_tile<'w, P: Profile>(
 #[inline]
 fn seen<P: Profile>(
     scene: &Scene<'_, P>,
-    ray: Option<RayOf<P>>,
+    ray: Option<&RayOf<P>>,
     hit: u32,
     stack: &mut Stack<P::Kernel>,
     branches: &mut Branches<P::Kernel>,
@@ -212,7 +226,7 @@ fn seen<P: Profile>(
 ) -> ColourOf<P> {
     stats.ray(RayKind::Primary);
     match ray {
-        Some(ray) => radiance(scene, &ray, hit, stack, branches, stats),
+        Some(ray) => radiance(scene, ray, hit, stack, branches, stats),
         None => Colour::constant(&scene.frame.background[0]),
     }
 }

@@ -13,7 +13,7 @@ pub use grid29::{Grid29, GridQ31};
 use core::fmt::Debug;
 
 use crate::colour::{Colour, Radiance};
-use crate::num::Triple;
+use crate::num::{BitLength, Triple};
 use crate::record::{Checker, Reach, Record};
 
 /// A cosine, or a share of light: a number in [0, 1].
@@ -28,7 +28,7 @@ pub const BRIGHTEST: u32 = 256;
 /// `radiance` times `factor / 2^32 * 2^exponent`, at most [`BRIGHTEST`] times. The factor is not 0, and is truncated to 16 bits.
 #[inline]
 pub(crate) fn faded(radiance: Radiance, factor_q32: u32, exponent: i32) -> Radiance {
-    let zeros = factor_q32.leading_zeros();
+    let zeros = u32::BITS - factor_q32.bit_length();
     let (factor_q16, exponent) = (((factor_q32 << zeros) >> 16) as u16, exponent - zeros as i32);
     // From 2^8 on, that is [1/2, 1) times 2^9.
     if exponent > 8 { radiance.times(1 << 15, 9) } else { radiance.times(factor_q16, exponent) }

@@ -47,29 +47,31 @@ pub(crate) fn radiance<P: Profile>(
         };
     }
     let mut total = ColourOf::<P>::default();
-    let (mut ray, mut share, mut depth, mut hit) = (*ray, WHITE, 0, hit);
+    let (mut ray, mut share, mut depth, mut hit) = (ray, WHITE, 0, hit);
+    let mut taken;
     branches.clear();
     loop {
-        let onward = if let Some(shaded) = shade(scene, &ray, hit, stack, stats) {
+        if let Some(shaded) = shade(scene, ray, hit, stack, stats) {
             total = total.plus(shaded.colour.reflected(&share));
-            go_on(scene, &ray, hit, &shaded, &share)
-        } else {
-            total = total.plus(background(scene, &ray).reflected(&share));
-            [None, None]
-        };
-        for (next, share, kind) in onward.into_iter().flatten() {
-            if depth < scene.frame.max_depth {
-                stats.ray(kind);
-                // There is room for one a level, and the one that is taken up again at once.
-                let _ = branches.push((next, share, depth + 1));
-            } else {
-                total = total.plus(background(scene, &next).reflected(&share));
+            if let Some(lustre) = shaded.lustre {
+                for (next, share, kind) in go_on(scene, ray, hit, &shaded, lustre, &share).into_iter().flatten() {
+                    if depth < scene.frame.max_depth {
+                        stats.ray(kind);
+                        // There is room for one a level, and the one that is taken up again at once.
+                        let _ = branches.push((next, share, depth + 1));
+                    } else {
+                        total = total.plus(background(scene, &next).reflected(&share));
+                    }
+                }
             }
+        } else {
+            total = total.plus(background(scene, ray).reflected(&share));
         }
         stats.next();
         let Some(next) = branches.pop() else { return total };
-        (ray, share, depth) = next;
-        hit = scene.bvh.closest(&ray, stack, stats);
+        (taken, share, depth) = next;
+        ray = &taken;
+        hit = scene.bvh.closest(ray, stack, stats);
         stats.surface(|| scene.bvh.ids.get(hit));
     }
 }
@@ -91,9 +93,9 @@ fn go_on<P: Profile>(
     ray: &RayOf<P>,
     hit: u32,
     shaded: &Shaded<'_, P>,
+    lustre: &Lustre,
     share: &Albedo,
 ) -> [GoesOn<P>; 2] {
-    let Some(lustre) = shaded.lustre else { return [None, None] };
     let along = P::Kernel::heading(ray);
     let surface = &shaded.surface;
     let bent = if P::NEEDS.has(Need::Refraction) && lustre.refracted != [0; 3] {

@@ -31,13 +31,13 @@ pub fn find<P: Profile>(
     stack: &mut core_rt::bvh::Stack<P::Kernel>,
     stats: &mut impl Stats,
 ) {
-    let rays = tile.places().map(|[x, y]| scene.primary(&scene.camera, x, y));
+    let ray = |[x, y]: [u16; 2]| scene.primary(&scene.camera, x, y);
     match way {
-        Way::Tile => scene.bvh.closest_tile(rays, hits, stack, stats),
+        Way::Tile => scene.bvh.closest_tile(tile.places().map(ray), hits, stack, stats),
         Way::Single => {
-            for (hit, ray) in hits.iter_mut().zip(rays) {
+            for (hit, place) in hits.iter_mut().zip(tile.places()) {
                 stats.ray(RayKind::Primary);
-                *hit = ray.map_or(NONE, |ray| scene.bvh.closest(&ray, stack, stats));
+                *hit = ray(place).as_ref().map_or(NONE, |ray| scene.bvh.closest(ray, stack, stats));
             }
         }
     }

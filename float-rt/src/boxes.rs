@@ -14,7 +14,7 @@ use core_rt::kernel::{ANY_OCTANT, Bounds};
 use core_rt::num::Triple;
 
 use crate::format::Format;
-use crate::ray::{Ray, padding};
+use crate::ray::{Path, padding};
 use crate::real::Real;
 use crate::record::NodeRecord;
 
@@ -38,11 +38,15 @@ pub(crate) fn limit<F: Real>(t: F) -> F {
     t * padding()
 }
 
-/// Where the ray enters each child, if it does before the limit.
+/// Where a ray enters a child, if it does before the limit.
 #[inline(always)]
-pub(crate) fn enter<F: Format, const OCTANT: usize>(ray: &Ray<F>, node: &F::Node, limit: F) -> [Option<F>; 2] {
-    let [first, second] = node.planes();
-    [slab::<_, OCTANT>(ray, first, limit), slab::<_, OCTANT>(ray, second, limit)]
+pub(crate) fn enter<F: Format, const OCTANT: usize>(
+    path: &Path<F>,
+    node: &F::Node,
+    child: usize,
+    limit: F,
+) -> Option<F> {
+    slab::<_, OCTANT>(path, &node.planes()[child], limit)
 }
 
 /// Whether floats are routines. Leaving a box as soon as an axis decides is what makes them bearable; an FPU is quicker
@@ -52,12 +56,12 @@ const SOFT_FLOAT: bool = cfg!(any(target_arch = "arm", target_arch = "riscv32"))
 /// A ray that does not move along an axis has an infinite reciprocal, and in a plane of the box the product is not a
 /// number; every comparison with it is false, which leaves the plane out of account.
 #[inline(always)]
-fn slab<F: Real, const OCTANT: usize>(ray: &Ray<F>, planes: &[Triple<F>; 2], limit: F) -> Option<F> {
+fn slab<F: Real, const OCTANT: usize>(path: &Path<F>, planes: &[Triple<F>; 2], limit: F) -> Option<F> {
     let (mut entry, mut exit) = (F::ZERO, limit);
     for axis in [0, 1, 2] {
-        let negative = if OCTANT == ANY_OCTANT { ray.negative[axis] } else { OCTANT >> axis & 1 != 0 };
-        let near = (planes[usize::from(negative)][axis] - ray.origin[axis]) * ray.entering[axis];
-        let far = (planes[usize::from(!negative)][axis] - ray.origin[axis]) * ray.leaving[axis];
+        let negative = if OCTANT == ANY_OCTANT { path.negative[axis] } else { OCTANT >> axis & 1 != 0 };
+        let near = (planes[usize::from(negative)][axis] - path.origin[axis]) * path.entering[axis];
+        let far = (planes[usize::from(!negative)][axis] - path.origin[axis]) * path.leaving[axis];
         entry = if near > entry { near } else { entry };
         exit = if far < exit { far } else { exit };
         if SOFT_FLOAT && entry > exit {
@@ -71,6 +75,7 @@ fn slab<F: Real, const OCTANT: usize>(ray: &Ray<F>, planes: &[Triple<F>; 2], lim
 mod tests {
     use super::*;
     use crate::Node32;
+    use crate::ray::Ray;
     use core_rt::kernel::NONE;
 
     const UNIT: Bounds = Bounds { low: [8; 3], high: [16; 3] };
@@ -78,7 +83,7 @@ mod tests {
     fn hit(origin: Triple<f32>, direction: Triple<f32>, limit: f32) -> Option<f32> {
         let ray = Ray::new(origin, direction, f32::INFINITY, NONE).unwrap();
         let node = pack::<f32>([UNIT; 2], [0; 2]);
-        let [first, second] = enter::<_, ANY_OCTANT>(&ray, &node, limit);
+        let [first, second] = [0, 1].map(|child| enter::<_, ANY_OCTANT>(&ray.path(), &node, child, limit));
         assert_eq!(first, second);
         first
     }
@@ -124,9 +129,13 @@ mod tests {
             let origin = [0, 1, 2].map(|axis: usize| (point[axis] - steps * direction[axis]) as f32);
             let Some(ray) = Ray::new(origin, direction.map(|c| c as f32), f32::INFINITY, NONE) else { continue };
             let node = pack::<f32>([Bounds { low: point, high: point }; 2], [0; 2]);
-            assert!(enter::<_, ANY_OCTANT>(&ray, &node, f32::INFINITY)[0].is_some(), "{point:?} {direction:?} {steps}");
-            let bare = Ray { leaving: ray.entering, ..ray };
-            unpadded += u32::from(enter::<_, ANY_OCTANT>(&bare, &node, f32::INFINITY)[0].is_none());
+            let path = ray.path();
+            assert!(
+                enter::<_, ANY_OCTANT>(&path, &node, 0, f32::INFINITY).is_some(),
+                "{point:?} {direction:?} {steps}"
+            );
+            let bare = Path { leaving: path.entering, ..path };
+            unpadded += u32::from(enter::<_, ANY_OCTANT>(&bare, &node, 0, f32::INFINITY).is_none());
         }
         assert!(unpadded > 1000, "without padding only {unpadded} were lost: the test has no teeth");
     }

@@ -11,7 +11,7 @@ use core_rt::sphere::Ball;
 
 use crate::boxes;
 use crate::format::Format;
-use crate::ray::Ray;
+use crate::ray::{Path, Ray};
 use crate::record::{NodeRecord, SphereRecord, TriangleRecord};
 use crate::space::FloatSpace;
 use crate::sphere;
@@ -43,6 +43,7 @@ impl<F: Format> Kernel for Float<F> {
     type Triangle = F::Triangle;
     type Sphere = F::Sphere;
     type Ray = Ray<F>;
+    type Path = Path<F>;
     type Distance = F;
     type Depth = F;
 
@@ -122,19 +123,24 @@ impl<F: Format> Kernel for Float<F> {
     }
 
     #[inline(always)]
-    fn octant(ray: &Ray<F>) -> usize {
-        let [x, y, z] = ray.negative.map(usize::from);
+    fn path(ray: &Ray<F>) -> Path<F> {
+        ray.path()
+    }
+
+    #[inline(always)]
+    fn octant(path: &Path<F>) -> usize {
+        let [x, y, z] = path.negative.map(usize::from);
         z << 2 | y << 1 | x
     }
 
     #[inline(always)]
-    fn reach(ray: &Ray<F>) -> F {
+    fn reach(ray: &Ray<F>, _: &Path<F>) -> F {
         boxes::limit(ray.reach)
     }
 
     #[inline(always)]
-    fn enter<const OCTANT: usize>(ray: &Ray<F>, node: &F::Node, limit: F) -> [Option<F>; 2] {
-        boxes::enter::<_, OCTANT>(ray, node, limit)
+    fn enter<const OCTANT: usize>(path: &Path<F>, node: &F::Node, child: usize, limit: F) -> Option<F> {
+        boxes::enter::<_, OCTANT>(path, node, child, limit)
     }
 
     #[inline(always)]
@@ -148,7 +154,7 @@ impl<F: Format> Kernel for Float<F> {
     }
 
     #[inline(always)]
-    fn limit(depth: &F) -> F {
+    fn limit(_: &Path<F>, depth: &F) -> F {
         boxes::limit(*depth)
     }
 

@@ -1,4 +1,4 @@
-//! Rays, with what the box test needs of them worked out once.
+//! Rays, and what the box test needs of them, worked out once a traversal.
 
 use core_rt::num::Triple;
 
@@ -15,6 +15,12 @@ pub struct Ray<F> {
     pub reach: F,
     /// The primitive that it starts on.
     pub skip: u32,
+}
+
+/// A ray, prepared for boxes.
+#[derive(Clone, Copy, Debug)]
+pub struct Path<F> {
+    pub(crate) origin: Triple<F>,
     /// Where the reciprocal is negative: of a direction of -0 it is, so the sign of the direction will not do.
     pub(crate) negative: [bool; 3],
     /// 1 / direction, for entries.
@@ -37,15 +43,19 @@ impl<F: Real> Ray<F> {
         if direction == [F::ZERO; 3] {
             return None;
         }
-        let entering = direction.map(|c| F::ONE / c);
-        Some(Self {
-            origin,
-            direction,
-            reach,
-            skip,
+        Some(Self { origin, direction, reach, skip })
+    }
+
+    /// The ray, prepared for boxes.
+    #[inline]
+    #[must_use]
+    pub fn path(&self) -> Path<F> {
+        let entering = self.direction.map(|c| F::ONE / c);
+        Path {
+            origin: self.origin,
             negative: entering.map(|c| c < F::ZERO),
             entering,
             leaving: entering.map(|c| c * padding()),
-        })
+        }
     }
 }

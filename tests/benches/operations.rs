@@ -46,7 +46,11 @@ fn work<K: Kernel>() -> Vec<(K::Ray, K::Node, K::Triangle)> {
 fn boxes<K: Kernel>(bencher: Bencher<'_, '_>) {
     let work = work::<K>();
     bencher.counter(ItemsCount::new(2 * COUNT)).bench_local(|| {
-        work.iter().filter(|(ray, node, _)| K::enter::<ANY_OCTANT>(ray, node, K::reach(ray))[0].is_some()).count()
+        let enters = |ray, node| {
+            let path = K::path(ray);
+            K::enter::<ANY_OCTANT>(&path, node, 0, K::reach(ray, &path)).is_some()
+        };
+        work.iter().filter(|(ray, node, _)| enters(ray, node)).count()
     });
 }
 

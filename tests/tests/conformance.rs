@@ -2,7 +2,7 @@
 //! as a fraction, for rays of every adversarial kind.
 
 use core_rt::bvh::{Bvh, Intersect};
-use core_rt::exact::{Exact, Ray, Width, Width14, Width20, Width29};
+use core_rt::exact::{Exact, Ray, Width, Width14, Width20, Width29, Width29In};
 use core_rt::kernel::{Kernel, NONE, Vertices};
 use core_rt::num::Word;
 use core_rt::profile::Full;
@@ -186,6 +186,14 @@ fn exact20_over_small_scenes() {
 #[test]
 fn exact29_over_small_scenes() {
     small::<Width29>(300_000);
+}
+
+/// The form that chips of 32 bits have, on any machine: every one of its narrow products is checked to be of narrow factors.
+#[test]
+fn exact29_as_on_chips() {
+    small::<Width29In<true>>(500_000);
+    let count = if tests::effort() > 1 { 100_000 } else { 5000 };
+    compare::<Width29In<true>>("heightfield of 80,000", &meshes::heightfield(29, 200, 5), 8, count, 5);
 }
 
 /// The long run takes 100,000 rays.

@@ -1,20 +1,20 @@
 //! Child boxes in pairs, and the conservative slab test (Kay & Kajiya 1986; Williams et al. 2005).
 //!
-//! **No false miss.** Let a ray hit a triangle in the box at t, and let T be t in the unit of `T_BITS`. Along each
+//! **No false miss.** Let a ray hit a triangle in the box at t, and let T be t in the unit of its [`Slopes`]. Along each
 //! axis the hit lies between the near and the far plane, so true entry <= T <= true exit. The computed entry is never
-//! above the true one where that is not negative, and negative where it is ([`Reciprocal`]), while T >= 0. The
-//! computed exit is below the true one by at most `SLACK` where that is not beyond `T_MAX` (each width's argument), and not
-//! below `T_MAX - SLACK` where it is, since `along` keeps order. So entry <= exit + SLACK, exit >= -SLACK, and
-//! entry <= limit + SLACK for every limit that is at most `SLACK` below T. `docs/EXACTNESS.md` has it step by step.
+//! above the true one where that is not negative, and negative where it is, while T >= 0. The computed exit is below the true one by
+//! at most the slack where that is not beyond the largest T, and not below that less the slack where it is, since distances keep
+//! the order of planes. So entry <= exit + slack, exit >= -slack, and entry <= limit for the limit of every depth that is at
+//! most the slack below T. `docs/EXACTNESS.md` has it step by step.
 //!
 //! High corners are stored plus one: a ray that does not move along an axis and lies in the box's last plane then has
 //! a difference of 1 to it, not 0.
 
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-use super::ray::Ray;
-use super::width::{Reciprocal, Width};
-use crate::kernel::{ANY_OCTANT, Bounds};
+use super::slopes::Slopes;
+use super::width::{Distance, Width};
+use crate::kernel::Bounds;
 use crate::num::Word;
 use crate::record::Record;
 
@@ -86,37 +86,33 @@ pub(super) fn unpack<W: Width>(node: &W::Node) -> [Bounds; 2] {
     })
 }
 
-/// Where the ray enters each child, if it does before the limit.
+/// Where a ray enters a child, if it does before the limit.
 #[inline(always)]
 pub(super) fn enter<W: Width, const OCTANT: usize>(
-    ray: &Ray<W>,
+    slopes: &W::Slopes,
     node: &W::Node,
-    limit: W::Word,
-) -> [Option<W::Word>; 2] {
-    let along = |axis: usize, plane: W::Word| ray.reciprocal[axis].along(plane - ray.origin[axis]);
-    let [first, second] = node.planes();
-    [slab::<OCTANT, _, _>(first, limit, W::SLACK, along), slab::<OCTANT, _, _>(second, limit, W::SLACK, along)]
+    child: usize,
+    limit: Distance<W>,
+) -> Option<Distance<W>> {
+    let [low, high] = &node.planes()[child];
+    let crossed = |axis: usize| slopes.crossed::<OCTANT>(axis, low[axis].into(), high[axis].into());
+    slab(limit, slopes.slack::<OCTANT>(), crossed)
 }
 
-/// Where a ray of an octant enters a box, if it does before the limit; `along` says at which distance it crosses a plane.
+/// Whether a box is left as soon as two axes decide. What predicts branches and runs ahead is quicker without.
+const LEAVES_EARLY: bool = cfg!(target_pointer_width = "32");
+
+/// Where a ray enters a box, if it does within the limit; `crossed` says at which distances it crosses the near and the far
+/// plane of an axis, and an exit is low by at most `slack`.
 #[inline(always)]
-pub(crate) fn slab<const OCTANT: usize, T: Word, P: Copy + Into<T>>(
-    planes: &[[P; 3]; 2],
-    limit: T,
-    slack: T,
-    along: impl Fn(usize, T) -> T,
-) -> Option<T> {
-    let crossed = |axis: usize| {
-        let (a, b) = (along(axis, planes[0][axis].into()), along(axis, planes[1][axis].into()));
-        match OCTANT {
-            ANY_OCTANT => (a.min(b), a.max(b)),
-            _ if OCTANT >> axis & 1 == 0 => (a, b),
-            _ => (b, a),
-        }
-    };
-    let [x, y, z] = [crossed(0), crossed(1), crossed(2)];
+pub(crate) fn slab<T: Word>(limit: T, slack: T, crossed: impl Fn(usize) -> (T, T)) -> Option<T> {
+    let ((x_near, x_far), (y_near, y_far)) = (crossed(0), crossed(1));
+    let (entry, exit) = (x_near.max(y_near), x_far.min(y_far));
+    if LEAVES_EARLY && entry > exit + slack {
+        return None;
+    }
+    let (z_near, z_far) = crossed(2);
     // Not clamped to 0: where the ray starts inside, a negative entry is as good a lower bound.
-    let entry = x.0.max(y.0).max(z.0);
-    let exit = x.1.min(y.1).min(z.1).min(limit) + slack;
-    (entry <= exit && exit >= T::ZERO).then_some(entry)
+    let (entry, exit) = (entry.max(z_near), exit.min(z_far) + slack);
+    if entry > limit || entry > exit || exit < T::ZERO { None } else { Some(entry) }
 }

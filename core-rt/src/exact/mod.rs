@@ -11,6 +11,7 @@
 mod boxes;
 mod ray;
 mod resolve;
+mod slopes;
 mod sphere;
 mod triangle;
 mod width;
@@ -21,19 +22,21 @@ mod width29;
 pub(crate) use boxes::slab;
 pub use boxes::{BoxNode, BoxNode14, BoxNode29};
 pub use ray::Ray;
+pub(crate) use slopes::in_order;
+pub use slopes::{PerAxis, Slopes, Slopes14, Slopes29};
 pub(crate) use sphere::{Crossing, crossing};
 pub use triangle::{Depth, TriangleRecord};
-pub use width::{Reciprocal, Wide, Width};
+pub use width::{Distance, Reciprocal, Wide, Width};
 pub use width14::Width14;
-pub use width20::Width20;
-pub use width29::Width29;
+pub use width20::{Reciprocal20, Width20};
+pub use width29::{Form, Reciprocal29, Width29, Width29In};
 
 use core::cmp::Ordering;
 use core::marker::PhantomData;
 
 use crate::arithmetic::{Arithmetic, Knobs};
 use crate::camera::Camera;
-use crate::kernel::{Bounds, Kernel, NONE, Surface, Vertices, octant};
+use crate::kernel::{Bounds, Kernel, NONE, Surface, Vertices};
 use crate::num::{Triple, Word};
 use crate::space::Space;
 use crate::sphere::{Ball, SphereRecord};
@@ -60,6 +63,7 @@ impl<W: Width> Kernel for Exact<W> {
     const DIRECTION_BITS: u32 = W::DIRECTION_BITS;
     const MATERIALS_MAX: u32 = W::MATERIALS_MAX;
     const RADIUS_MIN: i32 = sphere::RADIUS_MIN;
+    const ANY_OCTANT: bool = <W::Slopes as Slopes>::ANY_OCTANT;
 
     type Settings = ();
     type Space = W::Space;
@@ -68,7 +72,8 @@ impl<W: Width> Kernel for Exact<W> {
     type Triangle = TriangleRecord<W::Short>;
     type Sphere = SphereRecord<W::Short>;
     type Ray = Ray<W>;
-    type Distance = W::Word;
+    type Path = W::Slopes;
+    type Distance = Distance<W>;
     type Depth = Depth<W>;
 
     fn settle(knobs: &Knobs, _triangles: impl Iterator<Item = Vertices>) -> Option<Arithmetic> {
@@ -147,18 +152,28 @@ impl<W: Width> Kernel for Exact<W> {
     }
 
     #[inline(always)]
-    fn octant(ray: &Ray<W>) -> usize {
-        octant(ray.direction)
+    fn path(ray: &Ray<W>) -> W::Slopes {
+        W::Slopes::new(ray.origin, ray.direction)
     }
 
     #[inline(always)]
-    fn reach(ray: &Ray<W>) -> W::Word {
-        ray.reach_limit()
+    fn octant(slopes: &W::Slopes) -> usize {
+        slopes.octant()
     }
 
     #[inline(always)]
-    fn enter<const OCTANT: usize>(ray: &Ray<W>, node: &Self::Node, limit: W::Word) -> [Option<W::Word>; 2] {
-        boxes::enter::<W, OCTANT>(ray, node, limit)
+    fn reach(ray: &Ray<W>, slopes: &W::Slopes) -> Distance<W> {
+        slopes.limit(ray.reach_limit())
+    }
+
+    #[inline(always)]
+    fn enter<const OCTANT: usize>(
+        slopes: &W::Slopes,
+        node: &Self::Node,
+        child: usize,
+        limit: Distance<W>,
+    ) -> Option<Distance<W>> {
+        boxes::enter::<W, OCTANT>(slopes, node, child, limit)
     }
 
     #[inline(always)]
@@ -172,8 +187,8 @@ impl<W: Width> Kernel for Exact<W> {
     }
 
     #[inline(always)]
-    fn limit(depth: &Depth<W>) -> W::Word {
-        depth.t
+    fn limit(slopes: &W::Slopes, depth: &Depth<W>) -> Distance<W> {
+        slopes.limit(depth.t)
     }
 
     #[inline(always)]
@@ -182,8 +197,8 @@ impl<W: Width> Kernel for Exact<W> {
     }
 
     #[inline(always)]
-    fn within(entry: W::Word, limit: W::Word) -> bool {
-        entry <= limit + W::SLACK
+    fn within(entry: Distance<W>, limit: Distance<W>) -> bool {
+        entry <= limit
     }
 
     #[inline]

@@ -1,11 +1,11 @@
-//! Rays, prepared for the box test.
+//! Rays, scaled for the box test.
 //!
 //! A direction is scaled by a power of two until its largest component fills the format: a conservative box test
 //! needs the bits, and a test with |D| = 1 fails without it. A segment's end moves with the scale, so a segment is a
 //! ray whose reach is a power of two.
 
-use super::width::{Reciprocal, Width};
-use crate::num::{Triple, Word, bits, round_shift, sub};
+use super::width::Width;
+use crate::num::{Triple, Word, round_shift, sub};
 
 /// A ray or a segment.
 #[derive(Clone, Copy, Debug)]
@@ -14,7 +14,6 @@ pub struct Ray<W: Width> {
     pub origin: Triple<W::Word>,
     /// The direction, scaled.
     pub direction: Triple<W::Word>,
-    pub(super) reciprocal: [W::Reciprocal; 3],
     /// Only hits with t below 2 to this count; `None` for a ray without end.
     pub reach: Option<i32>,
     /// The primitive that it starts on.
@@ -39,21 +38,26 @@ impl<W: Width> Ray<W> {
     /// The ray, and by how many bits the direction was shifted to the left.
     #[inline]
     fn scaled(origin: Triple<W::Word>, direction: Triple<W::Word>, skip: u32) -> Option<(Self, i32)> {
-        let bits = bits(direction);
+        let [x, y, z] = direction.map(Word::magnitude);
+        let largest = x.max(y).max(z);
+        // Most camera rays fill the format as they are, and their bits need no counting.
+        if largest >> (W::DIRECTION_BITS - 1) == W::Word::ONE {
+            return Some((Self { origin, direction, reach: None, skip }, 0));
+        }
+        let bits = largest.magnitude_bits();
         if bits == 0 {
             return None;
         }
         let shift = W::DIRECTION_BITS as i32 - bits as i32;
         let direction = match shift {
-            0 => direction,
-            1.. => direction.map(|c| c << shift.unsigned_abs()),
+            0.. => direction.map(|c| c << shift.unsigned_abs()),
             // Rounding could carry into one more bit; one unit less is within the rounding.
             _ => {
                 let most = (W::Word::ONE << W::DIRECTION_BITS) - W::Word::ONE;
                 direction.map(|c| round_shift(c, shift.unsigned_abs()).clamp(-most, most))
             }
         };
-        Some((Self { origin, direction, reciprocal: direction.map(W::Reciprocal::new), reach: None, skip }, shift))
+        Some((Self { origin, direction, reach: None, skip }, shift))
     }
 
     /// The `t`, in [`Width::T_BITS`], beyond which nothing counts.

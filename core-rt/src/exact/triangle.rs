@@ -7,13 +7,12 @@
 //! The line through the ray meets the triangle iff U, V and W have one sign (zero belongs to both: edges are inclusive)
 //! and det is not 0. It is a hit iff t > 0.
 //!
-//! **Filter.** Let e be below 2^b for all edges e of the triangle (b is its `shift`), and q = R >> b. Then
-//! u = e2 . q is U / 2^b low or high by less than |e2|_1, since each component of R / 2^b - q is in [0, 1). So
-//! |u - U / 2^b| < 3 * 2^b, and likewise v. With R below 2^c, `|u| <= 3 * 2^b * 2^(c - b)` fits the word.
+//! **Filter.** Let e be below 2^b for all edges e of the triangle (b is its `shift`), m be b or [`Width::FILTER_SHIFT`], and
+//! q = R >> m. Then u = e2 . q is U / 2^m low or high by less than |e2|_1, since each component of R / 2^m - q is in [0, 1). So
+//! |u - U / 2^m| < 3 * 2^b, and likewise v. With R below 2^c, `|u| <= 3 * 2^b * 2^(c - m)` fits the word.
 //! The record keeps n = N >> k, k = max(0, 2 b - NORMAL_BITS). Then -(D . n) is det / 2^k within |D|_1, and shifted right
-//! by b - k it is det / 2^b within (3 * 2^DIRECTION_BITS >> (b - k)) + 1; no bit is lost there, since
-//! b - k = min(b, NORMAL_BITS - b) <= DIRECTION_BITS. W is a triple product with the third edge, as U and V are with theirs,
-//! so W / 2^b and its error, far below 2^c, fit the word although the terms' sum may not: it is computed by wrapping.
+//! by m - k it is det / 2^m within (3 * 2^DIRECTION_BITS >> (m - k)) + 2. W is a triple product with the third edge, as U and V
+//! are with theirs, so W / 2^m and its error, far below 2^c, fit the word although the terms' sum may not: it is computed by wrapping.
 //! Where the filter is undecided, the same sums are formed in [`Width::Wide`], without error. `docs/EXACTNESS.md` has the
 //! proof step by step.
 
@@ -24,7 +23,7 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 use super::ray::Ray;
 use super::width::{Wide, Width};
 use crate::kernel::Vertices;
-use crate::num::{Triple, Word, bits, cross, dot, sub};
+use crate::num::{Triple, Word, bits, cross, narrow_dot, sub};
 
 /// v0, e1, e2, n = N >> k (three fields each), then shift and material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
@@ -47,6 +46,11 @@ impl<T: Copy> TriangleRecord<T> {
         T: Into<W>,
     {
         self.row(0)
+    }
+
+    #[inline(always)]
+    fn v0_fields(&self) -> Triple<T> {
+        [self.0[0], self.0[1], self.0[2]]
     }
 
     #[inline(always)]
@@ -120,67 +124,74 @@ pub struct Depth<W: Width> {
     pub(super) t: W::Word,
 }
 
-/// What is known of a sign after the filter.
-#[inline(always)]
-fn sign<T: Word>(value: T, error: T) -> (bool, bool) {
-    (value >= error, value <= -error)
-}
-
 /// The hit, if there is one with 0 < t within the ray's reach.
 #[inline(always)]
 pub(super) fn intersect<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> Option<Depth<W>> {
-    let s: Triple<W::Word> = sub(ray.origin, triangle.v0());
-    let r = cross(s, ray.direction);
-    let (e1, e2): (Triple<W::Word>, Triple<W::Word>) = (triangle.e1(), triangle.e2());
-    let inside = if W::FILTERED { filtered(ray, triangle, e1, e2, r) } else { inside::<W>(ray, e1, e2, r) };
-    if inside { depth(ray, s, e1, e2) } else { None }
+    let inside = if W::FILTERED { filtered(ray, triangle) } else { decided(ray, triangle) };
+    if inside { depth(ray, triangle) } else { None }
 }
 
 /// Whether the line through the ray meets the triangle, by the filter where that decides.
-#[inline(always)]
-fn filtered<W: Width>(
-    ray: &Ray<W>,
-    triangle: &TriangleRecord<W::Short>,
-    e1: Triple<W::Word>,
-    e2: Triple<W::Word>,
-    r: Triple<W::Word>,
-) -> bool {
+///
+/// Not inlined: most triangles are missed, and what a chip with few registers has for itself here is worth more than the call.
+#[inline(never)]
+fn filtered<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> bool {
+    let [x, y, z] = triangle.v0_fields().map(W::coordinate);
+    let s = sub(ray.origin, [x, y, z]);
     let (shift, _) = W::split_meta(triangle.meta());
-    let q = r.map(|c| c >> shift);
+    let taken = W::FILTER_SHIFT.unwrap_or(shift);
+    let q = cross(s, ray.direction).map(|c| c >> taken);
     let edge_error = (W::Word::ONE + W::Word::ONE + W::Word::ONE) << shift;
-    let u = dot(e2, q);
-    let v = -dot(e1, q);
-    let (u_positive, u_negative) = sign(u, edge_error);
-    let (v_positive, v_negative) = sign(v, edge_error);
+    let u = narrow_dot(triangle.e2(), q);
+    let v = -narrow_dot(triangle.e1(), q);
+    // At least its error above 0, or below it: the sign is certain.
+    let (u_positive, u_negative) = (u >= edge_error, u <= -edge_error);
+    let (v_positive, v_negative) = (v >= edge_error, v <= -edge_error);
     if (u_positive && v_negative) || (u_negative && v_positive) {
         return false;
     }
 
-    // b - k = min(b, NORMAL_BITS - b), and b <= GRID_BITS <= NORMAL_BITS.
-    let down = shift.min(W::NORMAL_BITS - shift);
-    let det = -dot(ray.direction, triangle.n()) >> down;
-    let det_error = (((W::Word::ONE + W::Word::ONE + W::Word::ONE) << W::DIRECTION_BITS) >> down) + W::Word::ONE;
+    let down = match W::FILTER_SHIFT {
+        // m - k = b - k = min(b, NORMAL_BITS - b), and b <= GRID_BITS <= NORMAL_BITS.
+        None => shift.min(W::NORMAL_BITS - shift),
+        Some(taken) => taken - (2 * shift).saturating_sub(W::NORMAL_BITS),
+    };
+    let det = -narrow_dot(ray.direction, triangle.n()) >> down;
+    // Two: the shift may take a fraction off the error, and one off the determinant.
+    let det_error =
+        (((W::Word::ONE + W::Word::ONE + W::Word::ONE) << W::DIRECTION_BITS) >> down) + W::Word::ONE + W::Word::ONE;
     let w = det.wrapping_sub(u).wrapping_sub(v);
-    let (w_positive, w_negative) = sign(w, det_error + edge_error + edge_error);
-    if (w_positive && (u_negative || v_negative)) || (w_negative && (u_positive || v_positive)) {
-        return false;
+    let w_error = det_error + edge_error + edge_error;
+    if w >= w_error {
+        if u_negative || v_negative {
+            return false;
+        }
+        if u_positive && v_positive {
+            return true;
+        }
+    } else if w <= -w_error {
+        if u_positive || v_positive {
+            return false;
+        }
+        if u_negative && v_negative {
+            return true;
+        }
     }
-
-    let all_positive = u_positive && v_positive && w_positive;
-    let all_negative = u_negative && v_negative && w_negative;
-    all_positive || all_negative || undecided(ray, e1, e2, r)
+    undecided(ray, triangle)
 }
 
-/// [`inside`], where the filter does not decide. Rare, so kept out of line.
+/// [`decided`], where the filter does not decide. Rare, so kept out of line.
 #[cold]
 #[inline(never)]
-fn undecided<W: Width>(ray: &Ray<W>, e1: Triple<W::Word>, e2: Triple<W::Word>, r: Triple<W::Word>) -> bool {
-    inside::<W>(ray, e1, e2, r)
+fn undecided<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> bool {
+    decided(ray, triangle)
 }
 
 /// Whether the line through the ray meets the triangle, without error.
 #[inline(always)]
-fn inside<W: Width>(ray: &Ray<W>, e1: Triple<W::Word>, e2: Triple<W::Word>, r: Triple<W::Word>) -> bool {
+fn decided<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> bool {
+    let [v0, e1, e2] = parts::<W>(triangle);
+    let r = cross(sub(ray.origin, v0), ray.direction);
     let zero = W::Wide::default();
     let u = W::dot(e2, r);
     let v = -W::dot(e1, r);
@@ -194,7 +205,9 @@ fn inside<W: Width>(ray: &Ray<W>, e1: Triple<W::Word>, e2: Triple<W::Word>, r: T
 
 /// t, for a line that meets the triangle.
 #[inline]
-fn depth<W: Width>(ray: &Ray<W>, s: Triple<W::Word>, e1: Triple<W::Word>, e2: Triple<W::Word>) -> Option<Depth<W>> {
+fn depth<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> Option<Depth<W>> {
+    let [v0, e1, e2] = parts::<W>(triangle);
+    let s = sub(ray.origin, v0);
     let (numerator, denominator) = fraction::<W>(ray, s, e1, e2);
     if numerator <= W::Wide::default() {
         return None;

@@ -5,6 +5,7 @@ use core::fmt::Debug;
 use core::ops::{Add, Neg, Shr, Sub};
 
 use super::boxes::BoxNode;
+use super::slopes::Slopes;
 use crate::kernel::Surface;
 use crate::num::{Triple, Word};
 use crate::record::Record;
@@ -42,9 +43,11 @@ wide!(i64);
 wide!(i128);
 
 /// The reciprocal of a direction's component, of its sign, and never above the true one in magnitude.
-pub trait Reciprocal: Copy + Debug {
+pub trait Reciprocal: Copy + Debug + Send + Sync {
     /// The word of grid differences.
     type Word: Word;
+    /// By how much a product may be low; see [`Width::SLACK`].
+    const SLACK: Self::Word;
     /// From a component; 0 stands for "does not move along this axis".
     fn new(component: Self::Word) -> Self;
     /// `delta / component` in the unit of [`Width::SLACK`], rounded down; not above the true value where that is not
@@ -53,6 +56,9 @@ pub trait Reciprocal: Copy + Debug {
     /// [`Width::SLACK`].
     fn along(self, delta: Self::Word) -> Self::Word;
 }
+
+/// The word of distances to boxes.
+pub type Distance<W> = <<W as Width>::Slopes as Slopes>::Distance;
 
 /// The widths of an exact kernel.
 ///
@@ -76,6 +82,9 @@ pub trait Width: Copy + Debug + Default + Send + Sync + 'static {
     /// Whether edge functions are decided in the word where their signs are certain, and exactly only elsewhere. Not where
     /// [`Width::Wide`] is as good as the word.
     const FILTERED: bool = true;
+    /// By how many bits the filter lessens R; by those of the triangle's longest edge where it is not the same for all. Then
+    /// what is left of R fits 32 bits, and it is at least 2 `GRID_BITS` - `NORMAL_BITS`.
+    const FILTER_SHIFT: Option<u32> = None;
     /// See [`Kernel::MATERIALS_MAX`](crate::kernel::Kernel::MATERIALS_MAX).
     const MATERIALS_MAX: u32;
     /// Fractional bits of the `t` that boxes and depths are compared in.
@@ -95,9 +104,14 @@ pub trait Width: Copy + Debug + Default + Send + Sync + 'static {
     type Short: Record + Into<Self::Word> + TryFrom<i64> + Default;
     /// The record of a node.
     type Node: BoxNode<Plane: Into<Self::Word>>;
-    /// See [`Reciprocal`].
-    type Reciprocal: Reciprocal<Word = Self::Word>;
+    /// What the box test keeps of a ray.
+    type Slopes: Slopes<Word = Self::Word>;
 
+    /// A coordinate on the grid, which is not negative.
+    #[inline(always)]
+    fn coordinate(short: Self::Short) -> Self::Word {
+        short.into()
+    }
     /// The exact `a . b`, for `a` an edge, an origin's offset or a direction and `b` a cross product of two of these.
     fn dot(a: Triple<Self::Word>, b: Triple<Self::Word>) -> Self::Wide;
     /// The exact `a . a`, for `a` an edge, an origin's offset or a direction.

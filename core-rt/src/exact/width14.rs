@@ -20,9 +20,10 @@
 use core::cmp::Ordering;
 
 use super::boxes::BoxNode14;
-use super::width::{Reciprocal, Width};
+use super::slopes::Slopes14;
+use super::width::Width;
 use crate::kernel::Surface;
-use crate::num::{Triple, isqrt_u64, reciprocal, round_shift};
+use crate::num::{BitLength, Triple, isqrt_u64, reciprocal, round_shift};
 use crate::space::grid14::{POINT_BITS, normalise};
 use crate::space::{Grid14, Space};
 
@@ -38,35 +39,6 @@ pub struct Width14;
 /// side of the plane, and a ray that leaves to that side does not meet it.
 const STAND_OFF_2X: i32 = 3;
 
-/// mantissa, shift: `delta * mantissa >> shift` is t in Q13.
-#[derive(Clone, Copy, Debug)]
-pub struct Reciprocal14 {
-    mantissa: i32,
-    shift: u32,
-}
-
-impl Reciprocal for Reciprocal14 {
-    type Word = i32;
-
-    #[inline]
-    fn new(component: i32) -> Self {
-        if component == 0 {
-            // delta >= 1 becomes 2^16 - 1, which no t in Q13 exceeds by more than SLACK.
-            return Self { mantissa: 0xffff, shift: 0 };
-        }
-        // mantissa / 2^(16 + log2 d) * 2^13
-        let r = reciprocal(component.unsigned_abs());
-        let mantissa = r.mantissa as i32;
-        Self { mantissa: if component < 0 { -mantissa } else { mantissa }, shift: r.log2_d + 3 }
-    }
-
-    /// |delta| <= 2^15 and |mantissa| < 2^16: the product is below 2^31.
-    #[inline(always)]
-    fn along(self, delta: i32) -> i32 {
-        (delta * self.mantissa) >> self.shift
-    }
-}
-
 impl Width for Width14 {
     const ID: u16 = 14;
     const NAME: &'static str = "exact14";
@@ -77,9 +49,8 @@ impl Width for Width14 {
     const NORMAL_BITS: u32 = 15;
     const MATERIALS_MAX: u32 = (1 << 12) - 1;
     const T_BITS: u32 = 13;
-    /// An exit T <= 2^16 is computed low by less than T 2^-14 (the reciprocal) + 1 (the shift) <= 5. A depth is high by
-    /// less than 2^16 2^-15 = 2 (its denominator is truncated to 16 bits) and low by less than 2^16 2^-14 + 2 (its
-    /// numerator, truncated, times a mantissa of 2^16 / 2^15) + 1 = 7.
+    /// A depth is high by less than 2^16 2^-15 = 2 (its denominator is truncated to 16 bits) and low by less than
+    /// 2^16 2^-14 + 2 (its numerator, truncated, times a mantissa of 2^16 / 2^15) + 1 = 7. Of boxes [`Slopes14`] says it.
     const SLACK: i32 = 8;
     const T_MAX: i32 = 1 << 16;
 
@@ -88,7 +59,13 @@ impl Width for Width14 {
     type Wide = i64;
     type Short = i16;
     type Node = BoxNode14;
-    type Reciprocal = Reciprocal14;
+    type Slopes = Slopes14;
+
+    /// Without a sign: a Cortex-M0 reads such a half-word from anywhere in a record, and one with a sign only by a register.
+    #[inline(always)]
+    fn coordinate(short: i16) -> i32 {
+        (short as u16).into()
+    }
 
     /// By 15-bit limbs of b, so that a Cortex-M0 needs `muls` alone. For |a| < 2^15 and |b| <= 2^30 a limb's product is at
     /// most 2^15 (2^15 - 1), and two of them fit; the third is added in 64 bits.
@@ -230,7 +207,7 @@ fn quotient_q16(numerator: i64, denominator: i64) -> i32 {
 /// The number of bits of a positive value.
 #[inline]
 fn bits_of(value: i64) -> u32 {
-    i64::BITS - value.leading_zeros()
+    value.cast_unsigned().bit_length()
 }
 
 /// `value * 2^(to - from)`, rounded down: of a value with `from` bits, the leading `to`.

@@ -27,6 +27,7 @@ use core::cmp::Ordering;
 
 use super::Width29;
 use super::boxes::BoxNode29;
+use super::slopes::PerAxis;
 use super::width::{Reciprocal, Width};
 use crate::kernel::Surface;
 use crate::num::{Triple, dot};
@@ -42,6 +43,7 @@ pub struct Reciprocal20(i64);
 
 impl Reciprocal for Reciprocal20 {
     type Word = i64;
+    const SLACK: i64 = Width20::SLACK;
 
     #[inline]
     fn new(component: i64) -> Self {
@@ -81,7 +83,7 @@ impl Width for Width20 {
     type Wide = i64;
     type Short = i32;
     type Node = BoxNode29;
-    type Reciprocal = Reciprocal20;
+    type Slopes = PerAxis<Reciprocal20>;
 
     #[inline(always)]
     fn dot(a: Triple<i64>, b: Triple<i64>) -> i64 {

@@ -19,15 +19,35 @@
 use core::cmp::Ordering;
 
 use super::boxes::BoxNode29;
+use super::slopes::{PerAxis, Slopes, Slopes29};
 use super::width::{Reciprocal, Width};
+use super::width14::Width14;
 use crate::kernel::Surface;
-use crate::num::{Triple, round_shift};
+use crate::num::{BitLength, Triple, Word, round_shift};
 use crate::space::grid29::{POINT_BITS, normalise};
 use crate::space::{Grid29, Space};
 
-/// The widths of `exact29`.
+/// The widths of `exact29`, in the form that suits the machine.
+pub type Width29 = Width29In<{ cfg!(target_pointer_width = "32") }>;
+
+/// The widths of `exact29`, in one of two forms: that for machines of 32 bits reads boxes in 13 bits, which are rounded
+/// outwards, and knows a depth in 13 bits. Both find the same hits in the same records.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Width29;
+pub struct Width29In<const NARROW: bool>;
+
+/// In what the two forms differ.
+pub trait Form {
+    /// See [`Width::Slopes`].
+    type Slopes: Slopes<Word = i64>;
+}
+
+impl Form for Width29In<false> {
+    type Slopes = PerAxis<Reciprocal29>;
+}
+
+impl Form for Width29In<true> {
+    type Slopes = Slopes29;
+}
 
 /// How far rays start above a surface, in grid units.
 ///
@@ -41,6 +61,7 @@ pub struct Reciprocal29(i64);
 
 impl Reciprocal for Reciprocal29 {
     type Word = i64;
+    const SLACK: i64 = 4;
 
     #[inline]
     fn new(component: i64) -> Self {
@@ -58,7 +79,10 @@ impl Reciprocal for Reciprocal29 {
     }
 }
 
-impl Width for Width29 {
+impl<const NARROW: bool> Width for Width29In<NARROW>
+where
+    Self: Form,
+{
     const ID: u16 = 29;
     const NAME: &'static str = "exact29";
     const GRID_BITS: u32 = 29;
@@ -66,11 +90,13 @@ impl Width for Width29 {
     const SPAN: i32 = (1 << 29) - 8;
     const DIRECTION_BITS: u32 = 31;
     const NORMAL_BITS: u32 = 30;
+    const FILTER_SHIFT: Option<u32> = Some(32);
     const MATERIALS_MAX: u32 = (1 << 26) - 1;
     const T_BITS: u32 = 31;
     /// An exit T <= 2^31 is computed low by less than T 2^-32 (the reciprocal is at least 2^32, and its floor takes off less
-    /// than one) + 1 (the shift). A depth is within 3 of true: its denominator and numerator are truncated to 32 bits.
-    const SLACK: i64 = 4;
+    /// than one) + 1 (the shift). A depth is within 3 of true: its denominator and numerator are truncated to 32 bits. The
+    /// narrow one is [`Width14`](super::Width14)'s, in units of Q17: within 7 of them.
+    const SLACK: i64 = if NARROW { 8 << 14 } else { Reciprocal29::SLACK };
     const T_MAX: i64 = 1 << 30;
 
     type Space = Grid29;
@@ -78,10 +104,19 @@ impl Width for Width29 {
     type Wide = i128;
     type Short = i32;
     type Node = BoxNode29;
-    type Reciprocal = Reciprocal29;
+    type Slopes = <Self as Form>::Slopes;
 
+    /// The narrow form is by limbs of b, as [`Width14`](super::Width14)'s: of 30 bits, for |a| < 2^31 and |b| < 2^61. A limb's
+    /// product is below 2^62, and the third is added in 128 bits.
     #[inline]
     fn dot(a: Triple<i64>, b: Triple<i64>) -> i128 {
+        if NARROW {
+            let sum = |limb: fn(i64) -> i64| {
+                let two = a[0].product(limb(b[0])) + a[1].product(limb(b[1]));
+                i128::from(two) + i128::from(a[2].product(limb(b[2])))
+            };
+            return (sum(|b| b >> 30) << 30) + sum(|b| b & 0x3fff_ffff);
+        }
         let product = |a: i64, b: i64| i128::from(a) * i128::from(b);
         product(a[0], b[0]) + product(a[1], b[1]) + product(a[2], b[2])
     }
@@ -111,7 +146,12 @@ impl Width for Width29 {
     /// and below that a denominator is not 0: the compiler cannot know, and would link a panic.
     #[inline]
     fn depth(numerator: i128, denominator: i128) -> i64 {
-        let bits = i128::BITS - denominator.leading_zeros();
+        if NARROW {
+            // The 64 bits from the denominator's highest on: t in Q13 with a unit of 2^-4, which is Q17.
+            let above = denominator.cast_unsigned().bit_length().saturating_sub(i64::BITS - 5);
+            return i64::from(Width14::depth((numerator << 4 >> above) as i64, (denominator >> above) as i64)) << 14;
+        }
+        let bits = denominator.cast_unsigned().bit_length();
         let scaled = |value: i128| if bits > 32 { value >> (bits - 32) } else { value << (32 - bits) } as u64;
         ((scaled(numerator) << Self::T_BITS) / scaled(denominator).max(1)) as i64
     }
@@ -120,7 +160,7 @@ impl Width for Width29 {
     /// truncated, so it is within 2^-30 of true; the floor and the clamp keep it at most 1.
     #[inline]
     fn fraction(numerator: i128, denominator: i128) -> <Grid29 as Space>::Fraction {
-        let bits = i128::BITS - denominator.leading_zeros();
+        let bits = denominator.cast_unsigned().bit_length();
         let scaled = |value: i128| if bits > 32 { value >> (bits - 32) } else { value << (32 - bits) } as u64;
         let fraction = ((scaled(numerator) << 30) / scaled(denominator).max(1)).min(1 << 30);
         <Grid29 as Space>::Fraction::from_bits(fraction as i32)
@@ -193,7 +233,7 @@ impl Width for Width29 {
 /// t in Q62 from 64 leading bits of the denominator, so within 2^-61.
 #[inline(always)]
 fn quotient_q62(numerator: i128, denominator: i128) -> i128 {
-    let bits = i128::BITS - denominator.leading_zeros();
+    let bits = denominator.cast_unsigned().bit_length();
     let scaled = |value: i128| if bits > 64 { value >> (bits - 64) } else { value } as u128;
     // t <= 1/2: the numerator is at most 2^63 here, and 2^125 shifted.
     ((scaled(numerator) << 62) / scaled(denominator).max(1)) as i128

@@ -27,7 +27,7 @@
 use core::fmt::Debug;
 
 use crate::arithmetic::Arithmetic;
-use crate::exact::{Reciprocal, Width, Width29, slab};
+use crate::exact::{Reciprocal, Reciprocal29, in_order, slab};
 use crate::kernel::Bounds;
 use crate::num::Triple;
 
@@ -97,19 +97,22 @@ impl<const LEAST: i64> Slab for TightSlab<LEAST> {
     fn enter<const OCTANT: usize>(&self, origin: Triple<i64>, planes: &[[u32; 3]; 2], limit: i32) -> Option<i32> {
         // entry >> (C - D) <= limit; below 2^37.
         let limit = ((i64::from(limit) + 1) << self.fraction_bits) - 1;
-        let along = |axis: usize, plane: i64| ((plane - origin[axis]) >> self.d_bits) * self.reciprocal[axis];
-        slab::<OCTANT, _, _>(planes, limit, 0, along).map(|entry| (entry >> self.fraction_bits) as i32)
+        let along =
+            |axis: usize, plane: u32| ((i64::from(plane) - origin[axis]) >> self.d_bits) * self.reciprocal[axis];
+        let crossed =
+            |axis: usize| in_order::<OCTANT, _>(axis, along(axis, planes[0][axis]), along(axis, planes[1][axis]));
+        slab(limit, 0, crossed).map(|entry| (entry >> self.fraction_bits) as i32)
     }
 }
 
 /// The test that loses nothing.
 #[derive(Clone, Copy, Debug)]
-pub struct ConservativeSlab([<Width29 as Width>::Reciprocal; 3]);
+pub struct ConservativeSlab([Reciprocal29; 3]);
 
 impl Slab for ConservativeSlab {
     /// One more above, as `Exact29`'s.
     const PAD: [i32; 2] = [9, 10];
-    const SLACK: i32 = Width29::SLACK as i32;
+    const SLACK: i32 = Reciprocal29::SLACK as i32;
     const CONFIRMS: bool = true;
 
     #[inline]
@@ -119,8 +122,10 @@ impl Slab for ConservativeSlab {
 
     #[inline(always)]
     fn enter<const OCTANT: usize>(&self, origin: Triple<i64>, planes: &[[u32; 3]; 2], limit: i32) -> Option<i32> {
-        let along = |axis: usize, plane: i64| self.0[axis].along(plane - origin[axis]);
-        slab::<OCTANT, _, _>(planes, limit.into(), Width29::SLACK, along).map(|entry| entry as i32)
+        let along = |axis: usize, plane: u32| self.0[axis].along(i64::from(plane) - origin[axis]);
+        let crossed =
+            |axis: usize| in_order::<OCTANT, _>(axis, along(axis, planes[0][axis]), along(axis, planes[1][axis]));
+        slab(i64::from(limit) + Reciprocal29::SLACK, Reciprocal29::SLACK, crossed).map(|entry| entry as i32)
     }
 }
 

@@ -84,6 +84,7 @@ impl<V: Variant> Kernel for Hanika<V> {
     type Triangle = TriangleRecord;
     type Sphere = SphereRecord<i32>;
     type Ray = Ray<V::Slab>;
+    type Path = Ray<V::Slab>;
     type Distance = i32;
     type Depth = i32;
 
@@ -169,19 +170,23 @@ impl<V: Variant> Kernel for Hanika<V> {
     }
 
     #[inline(always)]
-    fn octant(ray: &Self::Ray) -> usize {
+    fn path(ray: &Self::Ray) -> Self::Path {
+        *ray
+    }
+
+    #[inline(always)]
+    fn octant(ray: &Self::Path) -> usize {
         crate::kernel::octant(ray.direction)
     }
 
     #[inline(always)]
-    fn reach(ray: &Self::Ray) -> i32 {
+    fn reach(ray: &Self::Ray, _: &Self::Path) -> i32 {
         ray.reach
     }
 
     #[inline(always)]
-    fn enter<const OCTANT: usize>(ray: &Self::Ray, node: &BoxNode29, limit: i32) -> [Option<i32>; 2] {
-        let [first, second] = node.planes();
-        [ray.slab.enter::<OCTANT>(ray.origin, first, limit), ray.slab.enter::<OCTANT>(ray.origin, second, limit)]
+    fn enter<const OCTANT: usize>(ray: &Self::Path, node: &BoxNode29, child: usize, limit: i32) -> Option<i32> {
+        ray.slab.enter::<OCTANT>(ray.origin, &node.planes()[child], limit)
     }
 
     #[inline(always)]
@@ -195,7 +200,7 @@ impl<V: Variant> Kernel for Hanika<V> {
     }
 
     #[inline(always)]
-    fn limit(depth: &i32) -> i32 {
+    fn limit(_: &Self::Path, depth: &i32) -> i32 {
         *depth
     }
 

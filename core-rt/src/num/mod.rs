@@ -4,12 +4,14 @@
 //! and every plain operator is expected not to overflow: builds with overflow checks trap where an
 //! argument is wrong. Where wrapping is meant, the operation says so.
 
+mod length;
 mod power;
 mod recip;
 mod rsqrt;
 
+pub use length::{BitLength, byte_length};
 pub use power::power;
-pub use recip::{RECIPROCAL_ERROR_BITS, Reciprocal16, reciprocal};
+pub use recip::{RECIPROCAL_ERROR_BITS, Reciprocal16, mantissa, reciprocal};
 pub use rsqrt::{inverse_sqrt_u32, inverse_sqrt_u64, isqrt_u64, sqrt_u32, sqrt_u64};
 
 use core::fmt::Debug;
@@ -41,6 +43,8 @@ pub trait Word:
     fn from_i64(value: i64) -> Option<Self>;
     /// The value, which the caller knows to fit 32 bits.
     fn low_i32(self) -> i32;
+    /// `self * other`, for factors that fit 32 bits: on a machine of 32 bits a wide product of two words, and not of four.
+    fn product(self, other: Self) -> Self;
     /// `self - other` modulo the word, for a difference that is known to fit although its parts do not.
     fn wrapping_sub(self, other: Self) -> Self;
     /// The number of bits that `|self|` takes: 0 for 0, n for 2^(n-1) <= |self| < 2^n.
@@ -69,12 +73,21 @@ macro_rules! word {
                 self as i32
             }
             #[inline(always)]
+            fn product(self, other: Self) -> Self {
+                debug_assert!([self, other].map(|c| Self::from(c as i32)) == [self, other]);
+                if cfg!(target_pointer_width = "32") {
+                    Self::from(self as i32) * Self::from(other as i32)
+                } else {
+                    self * other
+                }
+            }
+            #[inline(always)]
             fn wrapping_sub(self, other: Self) -> Self {
                 self.wrapping_sub(other)
             }
             #[inline(always)]
             fn magnitude_bits(self) -> u32 {
-                Self::BITS - self.unsigned_abs().leading_zeros()
+                self.unsigned_abs().bit_length()
             }
         }
     };
@@ -91,10 +104,17 @@ pub fn sub<T: Word>(a: Triple<T>, b: Triple<T>) -> Triple<T> {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-/// `a x b`. Each component is at most twice the product of the largest ones.
+/// `a x b`, for components that fit 32 bits. Each component is at most twice the product of the largest ones.
 #[inline(always)]
 pub fn cross<T: Word>(a: Triple<T>, b: Triple<T>) -> Triple<T> {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    let term = |i: usize, j: usize| a[i].product(b[j]) - a[j].product(b[i]);
+    [term(1, 2), term(2, 0), term(0, 1)]
+}
+
+/// `a . b` for components that fit 32 bits, in the word itself, so at most three times the product of the largest ones.
+#[inline(always)]
+pub fn narrow_dot<T: Word>(a: Triple<T>, b: Triple<T>) -> T {
+    a[0].product(b[0]) + a[1].product(b[1]) + a[2].product(b[2])
 }
 
 /// `a . b` in the word itself, so at most three times the product of the largest components.

@@ -5,6 +5,8 @@
 //! staircase from n = 1,000 on, and from 10,000 a cliff. So the argument is the versine x = 1 - cos, which a caller gets
 //! from the chord between two unit vectors, |a - b|^2 / 2, with all its bits.
 
+use super::BitLength;
+
 /// One in Q60, in which the tables are made.
 const ONE: u128 = 1 << 60;
 
@@ -68,7 +70,7 @@ fn entry(table: &[u16], index: u32) -> u32 {
 fn log2(versine_q30: u32) -> u32 {
     // 1 - x = m / 2^k with m in (1/2, 1], so that what is left of x is at most 1/2. k is 0 to 30.
     let cosine_q30 = (1 << 30) - versine_q30;
-    let k = (cosine_q30 - 1).leading_zeros() - 2;
+    let k = 30 - (cosine_q30 - 1).bit_length();
     let x_q30 = (1 << 30) - (cosine_q30 << k); // below 2^29
     let (low, high) = (entry(&LOG, x_q30 >> 23), entry(&LOG, (x_q30 >> 23) + 1));
     let part_q16 = (x_q30 >> 7) & 0xffff;

@@ -3,6 +3,8 @@
 //! A division costs about 180 instructions on a Cortex-M0 and this about 50. It serves as the reciprocal
 //! of a ray's direction in the box test, and wherever a quotient may be low by a known amount.
 
+use super::BitLength;
+
 /// `1 / d` as `mantissa / 2^(16 + log2_d)`, never above the true value, and below it by less than one
 /// part in `2^RECIPROCAL_ERROR_BITS`. See [`reciprocal`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,14 +41,20 @@ const TABLE: [u16; 1 << INDEX_BITS] = {
 /// taken off so that the result is never high. The test goes through every d < 2^16.
 #[inline]
 pub fn reciprocal(d: u32) -> Reciprocal16 {
-    let log2_d = 31 - (d | 1).leading_zeros();
+    let log2_d = (d | 1).bit_length() - 1;
     let x = if log2_d <= 15 { (d | (d == 0) as u32) << (15 - log2_d) } else { d >> (log2_d - 15) };
+    Reciprocal16 { mantissa: mantissa(x), log2_d }
+}
+
+/// `2^31 / x` for x in [2^15, 2^16), as in [`reciprocal`].
+#[inline(always)]
+pub fn mantissa(x: u32) -> u32 {
     let index = (x >> (15 - INDEX_BITS)) as usize & ((1 << INDEX_BITS) - 1);
     let r0 = TABLE[index] as i32; // masked to the table's length: no check, no panic
     // x r0 is within 2^23 of 2^31 and may pass it; the wrapped difference is exact.
     let e = (1u32 << 31).wrapping_sub(x * r0 as u32) as i32;
     let r1 = r0 + ((r0 * (e >> 15) + (1 << 15)) >> 16);
-    Reciprocal16 { mantissa: (r1 - 1) as u32, log2_d }
+    (r1 - 1) as u32
 }
 
 #[cfg(test)]

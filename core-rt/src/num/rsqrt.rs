@@ -4,7 +4,7 @@
 //! Normalising a vector is one of these and three products; with a square root and three divisions it is
 //! slower on a Cortex-M0 than soft float.
 
-use super::reciprocal;
+use super::BitLength;
 
 /// The table is indexed by the 7 leading bits of x in [2^30, 2^32): 32 to 127.
 const TABLE: [u16; 96] = {
@@ -67,7 +67,7 @@ pub fn sqrt_u32(x: u32) -> u32 {
     if x == 0 {
         return 0;
     }
-    let half_shift = x.leading_zeros() / 2;
+    let half_shift = (u32::BITS - x.bit_length()) / 2;
     let normal = x << (2 * half_shift);
     // sqrt = x / sqrt(x): below 2^16 2^16, and where x is largest its inverse is half of that.
     (((normal >> 16) * inverse_sqrt_u32(normal)) >> 15) >> half_shift
@@ -79,28 +79,43 @@ pub fn sqrt_u64(x: u64) -> u64 {
     if x == 0 {
         return 0;
     }
-    let half_shift = x.leading_zeros() / 2;
+    let half_shift = (u64::BITS - x.bit_length()) / 2;
     let normal = x << (2 * half_shift);
     (((normal >> 32) * inverse_sqrt_u64(normal)) >> 31) >> half_shift
 }
 
-/// `floor(sqrt(x))`, exactly, for x below 2^63, without a division.
+/// `floor(sqrt(x))`, exactly, without a division; any x.
 ///
-/// The approximate root is within 2^-27, so the remainder is below 2^39, and its share of twice the root, by a reciprocal of
-/// 16 bits, within a unit: one step up or down is left.
+/// With n = x 2^(2k) in [2^62, 2^64) and y from [`inverse_sqrt_u32`], 1 / sqrt(n) is y / 2^47 within 2^-13 of itself. So n y is
+/// within 2^-12, which is 2^20 units, and each remainder times y / 2^48 takes off all of the error but 2^-13 of it and what
+/// is cut off: 2^5 units and more at first, so 2^8 are left, then less than one. What is left after the division by 2^k is a
+/// step or two, in whole numbers: a square is multiplied out three times in all, and nothing else is wider than a word.
 #[inline]
 pub fn isqrt_u64(x: u64) -> u64 {
-    let root = sqrt_u64(x);
-    let r = reciprocal((root >> 1) as u32);
-    let remainder = x.cast_signed() - (root * root).cast_signed();
-    let root = (root.cast_signed() + ((remainder * i64::from(r.mantissa)) >> (18 + r.log2_d))).cast_unsigned();
-    if root * root > x {
-        root - 1
-    } else if (root + 1) * (root + 1) <= x {
-        root + 1
-    } else {
-        root
+    if x == 0 {
+        return 0;
     }
+    let half_shift = (u64::BITS - x.bit_length()) / 2;
+    let n = x << (2 * half_shift);
+    let high = (n >> 32) as u32;
+    let y = inverse_sqrt_u32(high);
+    // Below 2^63, since either root is within 2^-11 of the other.
+    let remainder = |n: u64, root: u32| n.wrapping_sub(u64::from(root) * u64::from(root)).cast_signed();
+    // 2^16 2^15 at most, and y is least where n is largest; the rest is as sqrt_u32's.
+    let root = ((high >> 16) * y).min(u32::MAX >> 1) << 1;
+    let root = root.saturating_add_signed(((remainder(n, root) >> 38) as i32 * (y >> 1) as i32) >> 9);
+    let root = root.saturating_add_signed(((remainder(n, root) >> 26) as i32 * (y >> 1) as i32) >> 21);
+    let mut root = root >> half_shift;
+    let mut rest = remainder(x, root);
+    while rest < 0 {
+        root -= 1;
+        rest += 2 * i64::from(root) + 1;
+    }
+    while rest > 2 * i64::from(root) {
+        rest -= 2 * i64::from(root) + 1;
+        root += 1;
+    }
+    root.into()
 }
 
 #[cfg(test)]

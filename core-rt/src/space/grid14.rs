@@ -9,7 +9,7 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 use super::{Space, faded, fresnel_q16, is_unit_q30, raised_q31};
 use crate::colour::{Radiance, Rgb16};
-use crate::num::{Triple, bits, dot, inverse_sqrt_u32, power, reciprocal, round_shift, sqrt_u32, sub};
+use crate::num::{BitLength, Triple, bits, dot, inverse_sqrt_u32, power, reciprocal, round_shift, sqrt_u32, sub};
 use crate::record::{Checker, Reach};
 
 /// The space of 14-bit grids.
@@ -30,7 +30,8 @@ pub struct Normal14(pub [i16; 3]);
 fn in_15_bits(v: Triple<i32>) -> Option<(Triple<i32>, u32)> {
     // The highest bit of all magnitudes is that of the largest.
     let [x, y, z] = v.map(i32::unsigned_abs);
-    let zeros = NonZeroU32::new(x | y | z)?.leading_zeros();
+    let all = NonZeroU32::new(x | y | z)?.get();
+    let zeros = u32::BITS - all.bit_length();
     let v = match zeros.checked_sub(17) {
         Some(up) => v.map(|c| c << up),
         None => {

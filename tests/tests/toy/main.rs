@@ -7,7 +7,7 @@
 mod truth;
 mod width;
 
-use core_rt::exact::{Depth, Exact, Ray, Width};
+use core_rt::exact::{Depth, Exact, Ray, Slopes, Width};
 use core_rt::kernel::{Bounds, Kernel, NONE};
 use num::{BigInt, BigRational};
 use rayon::prelude::*;
@@ -27,10 +27,14 @@ fn is_first_of_its_copies(points: &[Vector]) -> bool {
     (0..3).all(|axis| points.iter().any(|point| point[axis] == 0))
 }
 
+/// A width with everything hot in one word.
+trait ToyWidth: Width<Word = i32, Wide = i64, Slopes: Slopes<Distance = i32>> {}
+impl<W: Width<Word = i32, Wide = i64, Slopes: Slopes<Distance = i32>>> ToyWidth for W {}
+
 /// Entering a box, which both children of a node have.
-fn enter<W: Width<Word = i32>>(ray: &Ray<W>, node: &<Exact<W> as Kernel>::Node, limit: i32) -> Option<i32> {
-    let [first, second] = octants::enter::<Exact<W>>(ray, node, limit);
-    assert_eq!(first, second, "{ray:?}");
+fn enter<W: ToyWidth>(slopes: &W::Slopes, node: &<Exact<W> as Kernel>::Node, limit: i32) -> Option<i32> {
+    let [first, second] = octants::enter::<Exact<W>>(slopes, node, limit);
+    assert_eq!(first, second, "{slopes:?}");
     first
 }
 
@@ -45,7 +49,7 @@ struct Cast<W: Width> {
 }
 
 /// All rays and segments from a point.
-fn casts<W: Width<Word = i32>>(origin: Vector) -> Vec<Cast<W>> {
+fn casts<W: ToyWidth>(origin: Vector) -> Vec<Cast<W>> {
     let cast = |direction: usize| {
         let d = vector(direction);
         let to = [0, 1, 2].map(|axis| origin[axis] + d[axis]);
@@ -90,7 +94,7 @@ impl<W: Width> Default for Tally<W> {
     }
 }
 
-impl<W: Width<Word = i32, Wide = i64>> Tally<W> {
+impl<W: ToyWidth> Tally<W> {
     fn plus(mut self, other: Self) -> Self {
         self.cases += other.cases;
         self.hits += other.hits;
@@ -142,8 +146,9 @@ impl<W: Width<Word = i32, Wide = i64>> Tally<W> {
         self.hits += 1;
         let t = (t.0, t.1 * cast.scale);
         self.wrong_t += u64::from((depth.numerator, depth.denominator) != t);
-        let limit = Exact::<W>::limit(&depth);
-        let entered = enter(ray, node, limit).is_some_and(|entry| {
+        let path = Exact::<W>::path(ray);
+        let limit = Exact::<W>::limit(&path, &depth);
+        let entered = enter::<W>(&path, node, limit).is_some_and(|entry| {
             // Not after the hit, and not given up where the limit is the hit itself.
             i64::from(entry) * t.1 <= t.0 << W::T_BITS && Exact::<W>::within(entry, limit)
         });
@@ -166,7 +171,7 @@ impl<W: Width<Word = i32, Wide = i64>> Tally<W> {
 /// Every `step`th triangle against everything.
 fn enumerate<W>(determinants: &Determinants, step: usize) -> Tally<W>
 where
-    W: Width<Word = i32, Wide = i64, Reciprocal: Sync>,
+    W: ToyWidth,
 {
     let casts: Vec<_> = (0..POINTS).map(|origin| casts::<W>(point(origin))).collect();
     (0..POINTS.pow(3))
@@ -237,7 +242,7 @@ fn inside(origin: Vector, direction: Vector, bounds: &Bounds) -> Option<(i64, i6
 }
 
 /// Boxes that a ray is in at some t and that are not entered with that t as the limit, and how many rays were tried.
-fn boxes<W: Width<Word = i32, Wide = i64>>() -> [u64; 2] {
+fn boxes<W: ToyWidth>() -> [u64; 2] {
     let most: i32 = (1 << W::DIRECTION_BITS) - 1;
     let components = || -most..=most;
     let directions: Vec<Vector> = components()
@@ -258,8 +263,9 @@ fn boxes<W: Width<Word = i32, Wide = i64>>() -> [u64; 2] {
                 let Some((from, to)) = inside(origin, direction, &bounds) else { continue };
                 // A hit is at a t above 0; its depth is at least the floor of it.
                 for t in [from, to] {
-                    let limit = (t << W::T_BITS) / 420;
-                    counts[0] += u64::from(enter(&ray, &node, limit as i32).is_none());
+                    let path = Exact::<W>::path(&ray);
+                    let limit = path.limit(((t << W::T_BITS) / 420) as i32);
+                    counts[0] += u64::from(enter::<W>(&path, &node, limit).is_none());
                 }
             }
         }

@@ -9,7 +9,7 @@
 
 use std::cmp::Ordering;
 
-use core_rt::exact::{BoxNode14, Reciprocal, Width, Width14};
+use core_rt::exact::{BoxNode14, PerAxis, Reciprocal, Width, Width14};
 use core_rt::kernel::Surface;
 use core_rt::num::Triple;
 use core_rt::space::{Grid14, Space};
@@ -37,10 +37,11 @@ pub(crate) struct Toy<const DIRECTION_BITS: u32, const FAULT: u8>;
 
 /// `floor(2^5 / |component|)`, with the component's sign.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct ToyReciprocal<const FAULT: u8>(i32);
+pub(crate) struct ToyReciprocal<const DIRECTION_BITS: u32, const FAULT: u8>(i32);
 
-impl<const FAULT: u8> Reciprocal for ToyReciprocal<FAULT> {
+impl<const DIRECTION_BITS: u32, const FAULT: u8> Reciprocal for ToyReciprocal<DIRECTION_BITS, FAULT> {
     type Word = i32;
+    const SLACK: i32 = Toy::<DIRECTION_BITS, FAULT>::SLACK;
 
     fn new(component: i32) -> Self {
         Self(match component {
@@ -77,7 +78,7 @@ impl<const DIRECTION_BITS: u32, const FAULT: u8> Width for Toy<DIRECTION_BITS, F
     type Wide = i64;
     type Short = i8;
     type Node = BoxNode14;
-    type Reciprocal = ToyReciprocal<FAULT>;
+    type Slopes = PerAxis<ToyReciprocal<DIRECTION_BITS, FAULT>>;
 
     fn dot(a: Triple<i32>, b: Triple<i32>) -> i64 {
         (0..3).map(|axis| i64::from(a[axis]) * i64::from(b[axis])).sum()
