@@ -14,6 +14,7 @@ pub mod rays;
 pub mod scenes;
 pub mod shared;
 pub mod symbols;
+pub mod ties;
 
 /// How much more the long run does: 10 with `INTRAY_LONG` set, else 1.
 #[must_use]

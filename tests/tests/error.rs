@@ -6,8 +6,9 @@ use host_tools::engine::{self, Engine};
 use host_tools::model::Model;
 use host_tools::picture::Picture;
 use host_tools::prepare::Options;
-use host_tools::reference::{Reference, encode};
+use host_tools::reference::Reference;
 use tests::scenes;
+use tests::ties::{is_on_an_edge, is_tie};
 
 fn engine(name: &str) -> &'static dyn Engine {
     engine::by_name(name).expect("a kernel of this name")
@@ -20,26 +21,6 @@ fn picture(engine: &dyn Engine, model: &Model) -> Picture {
 
 fn truth(model: &Model) -> Picture {
     Reference::new(model).picture(&|_| {})
-}
-
-/// Whether two surfaces lie in one place there: within 2^-26 of the distance, about what the 29-bit grid resolves.
-fn is_tie(model: &Model, reference: &Reference<'_>, x: u32, y: u32) -> bool {
-    let (origin, direction) = reference.camera_ray(model.render.size, f64::from(x) + 0.5, f64::from(y) + 0.5);
-    reference.candidates(origin, direction, 1.0 / f64::from(1 << 26)).len() > 1
-}
-
-/// Whether the reference itself changes as much within 2^-14 of a pixel: an edge, or a shadow's, goes through the very
-/// middle of it. A unit of the 29-bit grid is 2^-19 of a pixel in a picture 1024 wide.
-fn is_on_an_edge(reference: &Reference<'_>, model: &Model, x: u32, y: u32) -> bool {
-    let gray = |dx: f64, dy: f64| -> i32 {
-        let (x, y) = (f64::from(x) + 0.5 + dx, f64::from(y) + 0.5 + dy);
-        let (origin, direction) = reference.camera_ray(model.render.size, x, y);
-        let seen = encode(reference.sample(origin, direction).colour, model.render.transfer);
-        seen.map(i32::from).iter().sum()
-    };
-    let step = 1.0 / f64::from(1 << 14);
-    let here = gray(0.0, 0.0);
-    [(step, 0.0), (-step, 0.0), (0.0, step), (0.0, -step)].iter().any(|&(dx, dy)| (gray(dx, dy) - here).abs() > 64)
 }
 
 /// Pixels over 64 that neither a tie nor an edge explains.
