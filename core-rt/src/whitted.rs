@@ -79,7 +79,8 @@ pub(crate) fn radiance<P: Profile>(
 /// What a ray sees that hits nothing.
 fn background<P: Profile>(scene: &Scene<'_, P>, ray: &RayOf<P>) -> ColourOf<P> {
     let [bottom, top] = &scene.frame.background;
-    if !P::NEEDS.has(Need::Sky) {
+    // One colour is that colour, under a profile with skies too: shares of rounding would take some of it away.
+    if !P::NEEDS.has(Need::Sky) || bottom == top {
         return Colour::constant(bottom);
     }
     let [down, up] = SpaceOf::<P>::altitude(P::Kernel::heading(ray));
