@@ -217,7 +217,15 @@ fn row(board: &'static Board, counter: &Counter, kernel: &str, blob: &[u8], host
     let chips = [report::row::Machine::Rv32imac, report::row::Machine::Thumbv6m];
     let machine = chips.into_iter().find(|chip| chip.board() == Some(board)).expect("every board is in the report");
     match &measured(&report(), kernel, machine).cost {
-        Cost::Instructions(stored) => assert_eq!(stored.instructions, instructions, "{kernel}, {machine:?}: {STALE}"),
+        // As much as instructions may grow before the guard of `instructions` asks for a look.
+        Cost::Instructions(stored) => {
+            let apart = stored.instructions.abs_diff(instructions);
+            assert!(
+                apart * 100 <= instructions,
+                "{kernel}, {machine:?}: {} and {instructions}: {STALE}",
+                stored.instructions
+            );
+        }
         Cost::Time(_) => panic!("the cost of a chip is in instructions"),
     }
     let ram = elf.static_bytes + u64::from(outcome.report.stack_bytes);
