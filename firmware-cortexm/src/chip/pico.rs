@@ -10,15 +10,15 @@ use rp_pac::{CLOCKS, PLL_SYS, RESETS, XOSC};
 #[unsafe(link_section = ".boot")]
 static BOOT: [u8; 256] = rp2040_boot2::BOOT_LOADER_W25Q080;
 
-/// The crystal's start-up delay, about 1 ms in steps of 256 periods at 12 MHz (data sheet, 2.16.3).
+/// The crystal's start-up delay, about 1 ms in steps of 256 periods at 12 MHz (data sheet, 2.16).
 const CRYSTAL_DELAY: u16 = 47;
 
-/// The phase-locked loop: 12 MHz times 125 is 1500 MHz, and that by 6 and by 2 is 125 MHz (data sheet, 2.18.2).
+/// The phase-locked loop: 12 MHz times 125 is 1500 MHz, and that by 6 and by 2 is 125 MHz (data sheet, 2.18).
 const FEEDBACK: u16 = 125;
 const DIVIDERS: [u8; 2] = [6, 2];
 
 /// The core's clock from the crystal at 125 MHz, instead of from the ring oscillator at about 6 MHz; the order of steps is
-/// that of the RP2040's data sheet, 2.15.3 and 2.18.3. A debugger resets the core and not the clocks, so that they may run
+/// that of the RP2040's data sheet, 2.15, 2.16 and 2.18. A debugger resets the core and not the clocks, so that they may run
 /// already.
 pub(super) fn start_clocks() {
     XOSC.ctrl().write(|ctrl| ctrl.set_freq_range(CtrlFreqRange::_1_15MHZ));

@@ -138,6 +138,8 @@ fn the_picture_comes_through_and_the_right_things_are_asked_for() {
     let verbs: Vec<_> = asked.lines().map(|line| line.split(' ').next().unwrap()).collect();
     assert_eq!(verbs, ["list", "download", "run"]);
     assert_eq!(asked.matches("--probe 2e8a:000c").count(), 2, "{asked}");
+    // Without these, faults end before the firmware can say what they are, and times stand among the digits.
+    assert_eq!(asked.matches("--no-catch-hardfault --no-timestamps").count(), 1, "{asked}");
 
     // Nobody needs to keep the picture; and what the program says after a good end is of no consequence.
     bench.write("fake/failure", b"Error: the probe went away\n");
