@@ -59,6 +59,9 @@ fn loaded(bytes: &[u8]) -> Result<Vec<Piece>, String> {
 
 /// What is wrong with pieces that are in order.
 fn checked(board: &Board, place: Region, pieces: &[Piece]) -> Result<(), String> {
+    if place.start < board.flash.start || place.end() > board.flash.end() {
+        return Err(format!("the blob's place at {:#010x} is outside its flash", place.start));
+    }
     let code = Region { start: board.flash.start, length: place.start.saturating_sub(board.flash.start) };
     for piece in pieces {
         let is_boot = board.boot.is_some_and(|boot| piece.is_inside(boot));
@@ -123,6 +126,8 @@ mod tests {
         assert!(complaint(|pieces| pieces[2].bytes.resize(0x18_0001, 0)).contains("0x10080000 are outside"));
         let ram = Piece { start: 0x2000_0000, bytes: vec![0] };
         assert!(complaint(|pieces| pieces.push(ram)).contains("0x20000000 are outside"));
+        let place = checked(&firmware_rt::board::MICROBIT, PLACE, &good());
+        assert!(place.is_err_and(|reason| reason.contains("place at 0x10080000 is outside")));
         let second = Piece { start: 0x1000_0200, bytes: vec![0] };
         assert!(complaint(|pieces| pieces.insert(2, second)).contains("overlap"));
     }
