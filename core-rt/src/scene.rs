@@ -124,7 +124,8 @@ impl<'a, P: Profile> Scene<'a, P> {
         let (bvh, shading) = view::<P>(&header, sections).ok_or(BlobError::Sections)?;
         let starts_within =
             |whole: &_| header.camera.starts_within(header.camera_use(P::NEEDS), whole, P::Kernel::SPAN);
-        check(&header, settings, starts_within, &bvh, &shading)?;
+        check::tree(&header, &bvh)?;
+        check::contents(&header, settings, starts_within, &bvh, &shading)?;
         if P::NEEDS.paint() {
             shading.paint.check(header.counts.triangles)?;
         }

@@ -119,7 +119,7 @@ fn what_there_was(triangles: usize, spheres: usize) -> String {
 
 /// What to do where a kernel's grid keeps no triangle.
 fn advice(keeper: Option<Keeper>) -> String {
-    let closer = "bring the camera and the lights closer to them";
+    let closer = "bring the camera and the lights closer to them, or make the lights directional";
     match keeper {
         None => format!("check the vertices, or {closer}"),
         Some(Keeper { kernel, kept }) => format!("{kernel} keeps {kept} of them, or {closer}"),

@@ -23,6 +23,8 @@ use host_tools::picture::Picture;
 use host_tools::prepare::Options;
 use host_tools::reference::Reference;
 use host_tools::render::Rendered;
+use host_tools::report::row::{Cost, Measured, Outcome, Point, Row, Study};
+use host_tools::report::{self, Report, page};
 use host_tools::{builtin, files};
 
 const END: &str = "<!-- end of generated -->\n";
@@ -118,6 +120,46 @@ fn the_readme_shows_what_the_program_makes() {
     check_picture("docs/demo.png", &shown.expect("there are kernels"));
 }
 
+/// The report of the gallery, as it is stored.
+fn report() -> Report {
+    let bytes = files::read(&root("docs/report/report.json")).expect("the gallery's report");
+    serde_json::from_slice(&bytes).expect("a report of this schema")
+}
+
+/// What was measured of the built-in scene by a kernel as it comes.
+fn measured<'a>(report: &'a Report, kernel: &str, machine: report::row::Machine) -> &'a Measured {
+    let is_it = |row: &&Row| {
+        let Point { scene, study, kernel: other, machine: on, size, .. } = &row.point;
+        (scene.as_str(), *study, other.as_str(), *on, *size) == ("demo", Study::Kernels, kernel, machine, CHIP_SIZE)
+    };
+    match report.rows.iter().find(is_it).map(|row| &row.outcome) {
+        Some(Outcome::Measured(measured)) => measured,
+        other => panic!("{kernel} on {machine:?}: {other:?}"),
+    }
+}
+
+/// How a stored report that is of other code is brought up to date.
+const STALE: &str = "docs/report is of other code; `cargo xtask report` renews it";
+
+#[test]
+fn the_readme_says_what_the_report_says() {
+    let report = report();
+    let (of_all, of_scenes) = page::in_words(&report);
+    assert!(!of_all.is_empty() && of_scenes.len() > 1, "the gallery has several scenes");
+    let (_, built_in_scene) = of_scenes.iter().find(|(scene, _)| scene == "demo").expect("the built-in scene");
+    let lines: String = built_in_scene.iter().chain(&of_all).map(|sentence| format!("- {sentence}\n")).collect();
+    check_part("headline", &lines, |stored, found| stored == found);
+
+    let model = built_in(CHIP_SIZE);
+    for engine in ENGINES {
+        let blob = engine.prepare(&model, &Options::default()).expect("it fits").blob;
+        let picture = engine.render(blob.bytes(), [32, 32], &|_| {}).expect("a blob just made").picture;
+        let stored = measured(&report, engine.name(), report::row::Machine::Host);
+        assert_eq!(stored.image_crc32, format!("{:08x}", picture.crc32()), "{}: {STALE}", engine.name());
+        assert_eq!(stored.blob_bytes, blob.bytes().len() as u64, "{}: {STALE}", engine.name());
+    }
+}
+
 /// The size of the default firmware's picture.
 const CHIP_SIZE: [u32; 2] = [160, 120];
 
@@ -172,6 +214,12 @@ fn row(board: &'static Board, counter: &Counter, kernel: &str, blob: &[u8], host
     let Counts { box_tests, triangle_tests, .. } = host.counts;
     let per_ray = |count: u64| count as f64 / host.counts.rays() as f64;
     let instructions = outcome.counts.expect("they were counted").instructions;
+    let chips = [report::row::Machine::Rv32imac, report::row::Machine::Thumbv6m];
+    let machine = chips.into_iter().find(|chip| chip.board() == Some(board)).expect("every board is in the report");
+    match &measured(&report(), kernel, machine).cost {
+        Cost::Instructions(stored) => assert_eq!(stored.instructions, instructions, "{kernel}, {machine:?}: {STALE}"),
+        Cost::Time(_) => panic!("the cost of a chip is in instructions"),
+    }
     let ram = elf.static_bytes + u64::from(outcome.report.stack_bytes);
     let row = format!(
         "| {} | `{kernel}` | {:.0} | {:.1} | {:.1} | {ram} | {} | {} |\n",

@@ -14,15 +14,14 @@ use crate::record::{Light, Lustre, Material, Reach};
 use crate::scene::{MAX_DEPTH, Shading};
 use crate::space::{Space, is_unit_q30};
 
-/// Checks everything that the sections say; camera rays by a function that knows which there are.
-pub(crate) fn check<P: Profile>(
+/// Checks what the sections say beside the [tree], which comes first; camera rays by a function that knows which there are.
+pub(crate) fn contents<P: Profile>(
     header: &Header,
     settings: <P::Kernel as Kernel>::Settings,
     starts_within: impl Fn(&Bounds) -> bool,
     bvh: &Bvh<'_, P>,
     shading: &Shading<'_, P::Kernel>,
 ) -> Result<(), BlobError> {
-    tree(header, bvh)?;
     origins(starts_within, bvh, shading)?;
     triangles(header, settings, bvh, shading)?;
     if P::NEEDS.has(Need::Spheres) {
@@ -180,9 +179,11 @@ impl Pending {
     }
 }
 
-// Out of line, so that its stack is not on top of what the header takes while it is decoded.
+/// Checks that the tree is one, of the stated depth, and that all that it holds is where its boxes say.
+// Out of line, so that its stack is on top of neither what the header takes while it is decoded nor of what the rest of the
+// check does: together they are the deepest that a firmware's stack gets.
 #[inline(never)]
-fn tree<P: Profile>(header: &Header, bvh: &Bvh<'_, P>) -> Result<(), BlobError> {
+pub(crate) fn tree<P: Profile>(header: &Header, bvh: &Bvh<'_, P>) -> Result<(), BlobError> {
     // The root has no parent, but what the box test computes with must lie on the grid.
     let (low, high) = (P::Kernel::MARGIN, (1 << P::Kernel::GRID_BITS) - 1 - P::Kernel::MARGIN);
     let grid = Bounds { low: [low; 3], high: [high; 3] };

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-use firmware_rt::board::{Board, HIFIVE1, MICROBIT};
 use firmware_rt::build::Traits;
 
 use super::measure::Picked;
@@ -20,20 +19,11 @@ pub(super) struct Chips {
     limit: Duration,
 }
 
-/// The board that stands for a machine; `None` for the host.
-fn board(machine: Machine) -> Option<&'static Board> {
-    match machine {
-        Machine::Host => None,
-        Machine::Rv32imac => Some(&HIFIVE1),
-        Machine::Thumbv6m => Some(&MICROBIT),
-    }
-}
-
 impl Chips {
     /// Those of `machines` that there are, and why there are no others. A run has `limit`.
     pub(super) fn find(machines: impl Iterator<Item = Machine>, limit: Duration) -> (Self, Vec<String>) {
         let (mut counters, mut notes) = (BTreeMap::new(), Vec::new());
-        for (machine, board) in machines.filter_map(|machine| Some((machine, board(machine)?))) {
+        for (machine, board) in machines.filter_map(|machine| Some((machine, machine.board()?))) {
             let there = emulate::check(board).and_then(|()| machine::Machine::of(board));
             match there.map_err(|error| error.to_string()).and_then(|emulator| Counter::provide(&emulator)) {
                 Ok(counter) => drop(counters.insert(machine, counter)),
@@ -51,7 +41,7 @@ impl Chips {
     /// Runs a point's blob. Rays and tests are the host's: the picture is, and tests of the firmware hold it to the same
     /// counts.
     pub(super) fn run(&self, machine: Machine, picked: Picked) -> Result<Measured, Trouble> {
-        let (Some(board), Some(counter)) = (board(machine), self.counters.get(&machine)) else {
+        let (Some(board), Some(counter)) = (machine.board(), self.counters.get(&machine)) else {
             return Err(Trouble::Broken("no such chip".into()));
         };
         let Picked { engine, blob, picture, measured } = picked;

@@ -6,6 +6,7 @@
 use std::fmt::{self, Display, Formatter};
 
 use clap::ValueEnum;
+use firmware_rt::board::{Board, HIFIVE1, MICROBIT};
 use serde::{Deserialize, Serialize};
 
 use crate::compare::Comparison;
@@ -23,6 +24,18 @@ pub enum Machine {
     Rv32imac,
     /// The micro:bit's Cortex-M0 in QEMU; its cost is instructions.
     Thumbv6m,
+}
+
+impl Machine {
+    /// The board; the host is none.
+    #[must_use]
+    pub fn board(self) -> Option<&'static Board> {
+        match self {
+            Self::Host => None,
+            Self::Rv32imac => Some(&HIFIVE1),
+            Self::Thumbv6m => Some(&MICROBIT),
+        }
+    }
 }
 
 /// What is varied: points of one study and scene make one series of a plot.

@@ -109,7 +109,17 @@ fn case_line(case: &Case, kernels: &[&str], rows: &[&Row]) -> String {
 /// Why, with the kernels of which the same is said together.
 fn reasons(case: &Case, rows: &[&Row]) -> String {
     // What differs in nothing but the kernel's name is the same.
-    let general = |row: &Row| row.reason.replace(row.kernel, "the kernel");
+    let is_of_name = |c: char| c.is_alphanumeric() || c == '-';
+    let general = |row: &Row| -> String {
+        // By whole words: one name may begin another.
+        let words = row.reason.split_inclusive(|c| !is_of_name(c));
+        words
+            .map(|word| match word.strip_prefix(row.kernel) {
+                Some(rest) if !rest.contains(is_of_name) => format!("the kernel{rest}"),
+                _ => word.to_owned(),
+            })
+            .collect()
+    };
     let mut said: Vec<(String, Vec<&Row>)> = Vec::new();
     for row in rows.iter().filter(|row| !row.reason.is_empty()) {
         match said.iter_mut().find(|(reason, _)| *reason == general(row)) {

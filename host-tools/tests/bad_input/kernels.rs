@@ -136,7 +136,7 @@ fn nothing_is_left_but_another_kernel_keeps_it() {
         folder.refuses(
             &format!("{line} --kernel exact14"),
             "error: scene.toml: none of 3 triangles has an area on the 15-bit grid of exact14, so nothing is left to render; \
-             exact20 keeps 3 of them, or bring the camera and the lights closer to them\n",
+             exact20 keeps 3 of them, or bring the camera and the lights closer to them, or make the lights directional\n",
         );
     }
 }

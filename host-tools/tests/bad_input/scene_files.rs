@@ -101,7 +101,7 @@ fn geometry_that_the_grid_cannot_hold() {
             &format!("render scene.obj --kernel {kernel} -o out.png"),
             &format!(
                 "error: scene.obj: none of 2 triangles has an area on the {bits}-bit grid of {kernel}, so nothing is \
-                 left to render; check the vertices, or bring the camera and the lights closer to them\n"
+                 left to render; check the vertices, or bring the camera and the lights closer to them, or make the lights directional\n"
             ),
         );
     }

@@ -112,7 +112,7 @@ fn distances_beyond_the_grid() {
         refused(
             lines,
             " none of 1 triangles has an area on the 29-bit grid of exact29, so nothing is left to render; check the \
-             vertices, or bring the camera and the lights closer to them",
+             vertices, or bring the camera and the lights closer to them, or make the lights directional",
         );
     }
 }

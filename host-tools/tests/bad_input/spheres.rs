@@ -44,6 +44,6 @@ fn nothing_is_left() {
     folder.refuses(
         "render scene.toml -o out.png --kernel exact14",
         "error: scene.toml: none of 1 spheres has a size on the 15-bit grid of exact14, so nothing is left to render; \
-         exact29 keeps 1 of them, or bring the camera and the lights closer to them\n",
+         exact29 keeps 1 of them, or bring the camera and the lights closer to them, or make the lights directional\n",
     );
 }

@@ -22,9 +22,23 @@ usage: cargo xtask VERB
   test [--long]        runs every check, after installing what they need
   fuzz [--seconds N]   fuzzes the blob and the importers, N seconds each (60)
   studies [--quick]    measures the 2009 report's claims and writes docs/STUDIES.md; quickly, and smaller, to out/studies
-  bless                renews the goldens and the README's figures, and shows which changed
+  bless                renews the goldens and the figures of documents, and shows which changed
+  report               measures the gallery and writes docs/report, and the README's part of it
   demo-scene           writes scenes/demo anew
   bench-scene          writes scenes/bench-1k anew";
+
+/// The tests whose files are renewed.
+const BLESSED: [&str; 9] = [
+    "bench_scene",
+    "goldens",
+    "machines",
+    "firmware_output",
+    "instructions",
+    "numerics",
+    "gallery",
+    "stress",
+    "readme",
+];
 
 /// What can be asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,6 +48,7 @@ enum Verb {
     Fuzz { seconds: u32 },
     Studies { quick: bool },
     Bless,
+    Report,
     DemoScene,
     BenchScene,
 }
@@ -49,6 +64,7 @@ impl Verb {
             ["studies"] => Some(Self::Studies { quick: false }),
             ["studies", "--quick"] => Some(Self::Studies { quick: true }),
             ["bless"] => Some(Self::Bless),
+            ["report"] => Some(Self::Report),
             ["demo-scene"] => Some(Self::DemoScene),
             ["bench-scene"] => Some(Self::BenchScene),
             _ => None,
@@ -97,18 +113,36 @@ fn perform(verb: Verb) -> Result<(), String> {
         Verb::Bless => run(&[
             Step::new(
                 "new goldens",
-                Task::new("cargo test -p tests --release --test bench_scene --test goldens --test machines --test firmware_output --test readme")
-                    .with("INTRAY_BLESS", "1"),
+                Task::new(&format!(
+                    "cargo test -p tests --profile checked {}",
+                    BLESSED.map(|test| format!("--test {test}")).join(" ")
+                ))
+                .with("INTRAY_BLESS", "1"),
             ),
-            Step::new("what changed", Task::new("git --no-pager diff --stat -- tests/goldens tests/firmware-output README.md docs")),
-            Step::new("what is new", Task::new("git status --short -- tests/goldens tests/firmware-output README.md docs")),
+            Step::new("what changed", Task::new("git --no-pager diff --stat -- tests README.md docs")),
+            Step::new("what is new", Task::new("git status --short -- tests README.md docs")),
         ])
         .map(drop),
+        Verb::Report => {
+            let scenes = report_scenes().map_err(|error| format!("scenes/gallery: {error}"))?.join(" ");
+            let line = format!("cargo run --quiet --release -- report {scenes} -o docs/report --quick --fresh");
+            let renew = Task::new("cargo test -p tests --profile checked --test readme").with("INTRAY_BLESS", "1");
+            run(&[Step::new("the report", Task::new(&line)), Step::new("the README's part of it", renew)]).map(drop)
+        }
         Verb::DemoScene => demo_scene::write(Path::new("scenes/demo")).map_err(|error| format!("scenes/demo: {error}")),
         Verb::BenchScene => {
             bench_scene::write(Path::new("scenes/bench-1k")).map_err(|error| format!("scenes/bench-1k: {error}"))
         }
     }
+}
+
+/// The scenes of `docs/report`: the built-in one, the gallery and the one that other tracers are timed on.
+fn report_scenes() -> std::io::Result<Vec<String>> {
+    let folders = std::fs::read_dir("scenes/gallery")?.collect::<Result<Vec<_>, _>>()?;
+    let mut names: Vec<String> = folders.iter().map(|entry| entry.path().display().to_string()).collect();
+    names.sort_unstable();
+    let ends = ["scenes/demo".to_owned()].into_iter().chain(names).chain(["scenes/raystones".to_owned()]);
+    Ok(ends.map(|folder| format!("{folder}/scene.toml")).collect())
 }
 
 /// Runs steps and sums up; how many were skipped.
@@ -133,6 +167,7 @@ mod tests {
         assert_eq!(Verb::parse(&["test"]), Some(Verb::Test { long: false }));
         assert_eq!(Verb::parse(&["test", "--long"]), Some(Verb::Test { long: true }));
         assert_eq!(Verb::parse(&["fuzz", "--seconds", "5"]), Some(Verb::Fuzz { seconds: 5 }));
+        assert_eq!(Verb::parse(&["report"]), Some(Verb::Report));
         assert_eq!(Verb::parse(&["studies", "--quick"]), Some(Verb::Studies { quick: true }));
         for wrong in [
             &[][..],

@@ -93,6 +93,15 @@ pub fn renew(folder: &Path) -> Result<PathBuf, RenewError> {
     Ok(html)
 }
 
+/// What a report says in words: a sentence a machine over all scenes, none where there are fewer than two, and each scene
+/// with its own.
+#[must_use]
+pub fn in_words(report: &Report) -> (Vec<String>, Vec<(String, Vec<String>)>) {
+    let context = Context::new(report);
+    let overview = overview::overview(report, &context.kernels);
+    (summary::over_all(&overview), summary::sentences(&context))
+}
+
 /// The page of a report whose pictures are in `folder`. A picture that cannot be read is named in its place.
 ///
 /// # Errors
