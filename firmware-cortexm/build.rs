@@ -1,5 +1,8 @@
 //! The linker script of the board and the profile of the blob.
 
+use firmware_rt::board::{MICROBIT, PICO};
+
 fn main() -> std::io::Result<()> {
-    firmware_rt::build::script(&firmware_rt::board::MICROBIT, "MICROBIT")
+    let (board, constant) = if cfg!(feature = "pico") { (&PICO, "PICO") } else { (&MICROBIT, "MICROBIT") };
+    firmware_rt::build::script(board, constant)
 }

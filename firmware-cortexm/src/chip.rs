@@ -1,9 +1,22 @@
-//! Faults of a Cortex-M0.
+//! Faults of a Cortex-M0, and the board that all of this is for.
+
+#[cfg(feature = "pico")]
+mod pico;
 
 use cortex_m as _;
 use cortex_m_rt as _;
-use firmware_rt::board::MICROBIT;
+#[cfg(not(feature = "pico"))]
+pub(crate) use firmware_rt::board::MICROBIT as BOARD;
+#[cfg(feature = "pico")]
+pub(crate) use firmware_rt::board::PICO as BOARD;
 use firmware_rt::end;
+
+/// What a board needs before anything else; to be called first.
+#[inline(always)]
+pub(crate) fn start() {
+    #[cfg(feature = "pico")]
+    pico::start_clocks();
+}
 
 /// Where every fault ends up; the stack pointer is that of the frame that the core has pushed, or tried to. The stack may
 /// have no room left, so that nothing can be pushed before it begins anew.
@@ -27,7 +40,7 @@ unsafe extern "C" fn HardFault() -> ! {
 extern "C" fn fault(frame: u32) -> ! {
     const LENGTH: u32 = 32;
     const COUNTER: u32 = 24;
-    let stack = MICROBIT.stack;
+    let stack = BOARD.stack;
     let is_whole = (stack.start..=stack.end() - LENGTH).contains(&frame);
     // SAFETY: an aligned word of the stack, where the core has pushed the program counter.
     let counter =

@@ -1,4 +1,4 @@
-//! Renders the blob in a microbit's flash. On the host there is nothing to do but to say so.
+//! Renders the blob in a board's flash. On the host there is nothing to do but to say so.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
@@ -6,16 +6,18 @@ mod chip;
 
 #[cfg(target_os = "none")]
 mod program {
-    use firmware_rt::board::MICROBIT;
     use firmware_rt::end::end;
     use firmware_rt::{run, stack};
+
+    use crate::chip;
 
     include!(concat!(env!("OUT_DIR"), "/firmware.rs"));
 
     #[cortex_m_rt::entry]
     fn main() -> ! {
         // SAFETY: the linker script is made from the board; nothing but the stack lies there.
-        unsafe { stack::paint(MICROBIT.stack) };
+        unsafe { stack::paint(chip::BOARD.stack) };
+        chip::start();
         let storage = &raw mut STORAGE;
         // SAFETY: this function is entered once, and nothing else names the storage.
         let storage = unsafe { &mut *storage };

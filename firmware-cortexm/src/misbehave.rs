@@ -1,4 +1,4 @@
-//! What firmware for a microbit should never do, on purpose.
+//! What firmware for a Cortex-M0 should never do, on purpose.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
@@ -7,7 +7,8 @@ mod chip;
 #[cfg(target_os = "none")]
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    firmware_rt::misbehave::misbehave(&firmware_rt::board::MICROBIT)
+    chip::start();
+    firmware_rt::misbehave::misbehave(&chip::BOARD)
 }
 
 #[cfg(not(target_os = "none"))]

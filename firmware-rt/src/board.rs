@@ -36,6 +36,14 @@ pub struct Board {
     pub target: &'static str,
     /// The package of its firmware.
     pub package: &'static str,
+    /// The feature of the package that makes it for this board; `None` where it is made for it without one.
+    pub feature: Option<&'static str>,
+    /// What probe-rs calls the chip.
+    pub probe_rs_chip: &'static str,
+    /// The number that files for its boot loader's drive have (UF2); `None` where there is no such drive.
+    pub uf2_family: Option<u32>,
+    /// Flash for the boot loader that is part of the firmware, if one is.
+    pub boot: Option<Region>,
     /// Flash for code, constants and the blob.
     pub flash: Region,
     /// The bytes of it that are for code and constants: of `exact14`, and of the other kernels.
@@ -70,6 +78,10 @@ pub const MICROBIT: Board = Board {
     chip: "nRF51822, Cortex-M0",
     target: "thumbv6m-none-eabi",
     package: "firmware-cortexm",
+    feature: None,
+    probe_rs_chip: "nRF51822_xxAA",
+    uf2_family: None,
+    boot: None,
     flash: Region { start: 0, length: 256 * KIB },
     code_lengths: [80 * KIB, 96 * KIB],
     stack: Region { start: 0x2000_0000, length: 8 * KIB },
@@ -82,14 +94,37 @@ pub const HIFIVE1: Board = Board {
     chip: "FE310, rv32imac",
     target: "riscv32imac-unknown-none-elf",
     package: "firmware-riscv",
+    feature: None,
+    probe_rs_chip: "fe310-g002",
+    uf2_family: None,
+    boot: None,
     flash: Region { start: 0x2001_0000, length: 4032 * KIB },
     code_lengths: [448 * KIB; 2],
     stack: Region { start: 0x8000_0000, length: 8 * KIB },
     ram: Region { start: 0x8000_2000, length: 8 * KIB },
 };
 
+/// Raspberry Pi Pico: 2 MiB of flash behind a serial bus, which 256 bytes of boot loader at its start set up; 264 KiB of RAM.
+///
+/// No emulator here has it, and it has not yet been run on hardware: what is built for it is checked, byte by byte.
+pub const PICO: Board = Board {
+    name: "pico",
+    chip: "RP2040, Cortex-M0+",
+    target: "thumbv6m-none-eabi",
+    package: "firmware-cortexm",
+    feature: Some("pico"),
+    probe_rs_chip: "RP2040",
+    uf2_family: Some(0xe48b_ff56),
+    boot: Some(Region { start: 0x1000_0000, length: 0x100 }),
+    flash: Region { start: 0x1000_0100, length: 2048 * KIB - 0x100 },
+    // The blob begins with a sector of 4 KiB.
+    code_lengths: [512 * KIB - 0x100; 2],
+    stack: Region { start: 0x2000_0000, length: 16 * KIB },
+    ram: Region { start: 0x2000_4000, length: 248 * KIB },
+};
+
 /// All boards.
-pub const BOARDS: [&Board; 2] = [&MICROBIT, &HIFIVE1];
+pub const BOARDS: [&Board; 3] = [&MICROBIT, &HIFIVE1, &PICO];
 
 /// The board of a name.
 #[must_use]
@@ -104,9 +139,10 @@ mod tests {
 
     #[test]
     fn regions_do_not_overlap_and_the_stack_is_at_the_bottom() {
-        for board in BOARDS {
+        for (board, all) in BOARDS.into_iter().zip([16, 16, 264]) {
             assert_eq!(board.stack.end(), board.ram.start, "{}", board.name);
-            assert_eq!(board.stack.length + board.ram.length, 16 * KIB, "{}", board.name);
+            assert_eq!(board.stack.length + board.ram.length, all * KIB, "{}", board.name);
+            assert!(board.boot.is_none_or(|boot| boot.end() == board.flash.start), "{}", board.name);
             assert_eq!(board.ram.start % 16, 0, "{}", board.name);
             for kernel in [Exact14::ID, Exact29::ID] {
                 let (code, blob) = (board.code(kernel), board.blob(kernel));

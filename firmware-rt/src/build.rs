@@ -122,7 +122,7 @@ fn memory(board: &Board, kernel: u16, is_riscv: bool) -> String {
     let mut text = String::from("MEMORY\n{\n");
     let regions =
         [("FLASH", board.code(kernel)), ("BLOB", board.blob(kernel)), ("STACK", board.stack), ("RAM", board.ram)];
-    for (name, region) in regions {
+    for (name, region) in board.boot.map(|boot| ("BOOT", boot)).into_iter().chain(regions) {
         let _ = writeln!(text, "  {name} : ORIGIN = {:#010x}, LENGTH = {:#x}", region.start, region.length);
     }
     text.push_str(
@@ -144,6 +144,9 @@ fn memory(board: &Board, kernel: u16, is_riscv: bool) -> String {
     // Nothing unwinds, and the tables would otherwise follow the blob into its region.
     text.push_str("SECTIONS { /DISCARD/ : { *(.eh_frame .eh_frame.*); } }\n");
     text.push_str("SECTIONS { .blob : { KEEP(*(.blob)); } > BLOB } INSERT AFTER .rodata;\n");
+    if board.boot.is_some() {
+        text.push_str("SECTIONS { .boot ORIGIN(BOOT) : { KEEP(*(.boot)); } > BOOT } INSERT BEFORE .text;\n");
+    }
     text
 }
 
@@ -184,7 +187,7 @@ fn firmware(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::board::{HIFIVE1, MICROBIT};
+    use crate::board::{HIFIVE1, MICROBIT, PICO};
 
     #[test]
     fn traits_are_read_from_a_blob_and_from_nothing_else() {
@@ -202,7 +205,10 @@ mod tests {
     fn scripts_have_the_boards_memory() {
         let text = memory(&MICROBIT, 14, false);
         assert!(text.contains("STACK : ORIGIN = 0x20000000, LENGTH = 0x2000\n"), "{text}");
-        assert!(!text.contains("REGION_ALIAS"));
+        assert!(!text.contains("REGION_ALIAS") && !text.contains("BOOT"), "{text}");
+        let text = memory(&PICO, 14, false);
+        assert!(text.contains("BOOT : ORIGIN = 0x10000000, LENGTH = 0x100\n") && text.contains("> BOOT }"), "{text}");
+        assert!(text.contains("BLOB : ORIGIN = 0x10080000, LENGTH = 0x180000\n"), "{text}");
         let text = memory(&HIFIVE1, 29, true);
         assert!(text.contains("BLOB : ORIGIN = 0x20080000") && text.contains("(\"REGION_STACK\", STACK)"), "{text}");
     }

@@ -5,6 +5,9 @@
 
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
+/// The name of the channel that frames are written to, in [`digits`](crate::digits), by RTT.
+pub const CHANNEL: &str = "picture";
+
 /// The file that frames are written to, under semihosting.
 pub const FILE: &core::ffi::CStr = c"intray.frames";
 

@@ -1,7 +1,7 @@
 //! What firmware and host agree on, and what the firmware of every board shares.
 //!
 //! # Agreed on
-//! [`board`]s with their memory maps, [`frame`]s that carry the picture, the [`status`] that a run ends with, and what
+//! [`board`]s with their memory maps, [`frame`]s that carry the picture and the [`digits`] that they are by RTT, the [`status`] that a run ends with, and what
 //! the picture of the nearest [`hits`] is. Which operations' [`costs`] are counted.
 //!
 //! # On the chip
@@ -15,6 +15,7 @@
 
 pub mod board;
 pub mod costs;
+pub mod digits;
 pub mod frame;
 pub mod hits;
 pub mod status;

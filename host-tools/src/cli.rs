@@ -6,6 +6,7 @@ mod compare;
 mod demo;
 mod emulate;
 mod failure;
+mod flash;
 mod input;
 mod inspect;
 mod load;
@@ -42,6 +43,7 @@ enum Command {
     Trace(trace::Arguments),
     Compare(compare::Arguments),
     Emulate(emulate::Arguments),
+    Flash(flash::Arguments),
     Stress(stress::Arguments),
     Report(report::Arguments),
     #[command(hide = true)]
@@ -59,6 +61,7 @@ pub fn run() -> ExitCode {
         Some(Command::Trace(arguments)) => trace::run(&arguments),
         Some(Command::Compare(arguments)) => compare::run(&arguments),
         Some(Command::Emulate(arguments)) => emulate::run(&arguments),
+        Some(Command::Flash(arguments)) => flash::run(&arguments),
         Some(Command::Stress(arguments)) => stress::run(&arguments),
         Some(Command::Report(arguments)) => report::run(&arguments),
         Some(Command::RunElf(arguments)) => run_elf::run(&arguments),

@@ -9,6 +9,7 @@ pub mod decimate;
 pub mod emulate;
 pub mod engine;
 pub mod files;
+pub mod flash;
 pub mod grid;
 pub mod import;
 pub mod model;

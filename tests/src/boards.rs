@@ -9,9 +9,9 @@ use host_tools::emulate::counter::Counter;
 use host_tools::emulate::elf::Elf;
 use host_tools::emulate::machine::Machine;
 
-/// The boards whose emulator and whose target are installed; of others it is said that they are skipped.
+/// The boards that can be emulated and whose emulator and target are installed; of those that lack these it is said that they are skipped.
 pub fn boards() -> impl Iterator<Item = &'static Board> {
-    BOARDS.into_iter().filter(|board| match emulate::check(board) {
+    BOARDS.into_iter().filter(|board| Machine::of(board).is_ok()).filter(|board| match emulate::check(board) {
         Ok(()) => true,
         Err(error) => {
             println!("skipped {}: {error}", board.name);
@@ -22,11 +22,13 @@ pub fn boards() -> impl Iterator<Item = &'static Board> {
 
 /// Those of them whose instructions can be counted, each with what counts them.
 pub fn counted() -> impl Iterator<Item = (&'static Board, Counter)> {
-    boards().filter_map(|board| match Counter::provide(&Machine::of(board)) {
-        Ok(counter) => Some((board, counter)),
-        Err(reason) => {
-            println!("skipped {}: {reason}", board.name);
-            None
+    boards().filter_map(|board| {
+        match Machine::of(board).map_err(|error| error.to_string()).and_then(|machine| Counter::provide(&machine)) {
+            Ok(counter) => Some((board, counter)),
+            Err(reason) => {
+                println!("skipped {}: {reason}", board.name);
+                None
+            }
         }
     })
 }

@@ -104,7 +104,7 @@ fn complaints(board: &str, found: &BTreeMap<String, u64>, expected: &BTreeMap<St
 fn nothing_takes_more_instructions_than_it_did() {
     let mut found = Counts { compiler: compiler(), ..Counts::default() };
     for board in boards() {
-        match Counter::provide(&Machine::of(board)) {
+        match Machine::of(board).map_err(|error| error.to_string()).and_then(|machine| Counter::provide(&machine)) {
             Ok(counter) => drop(found.boards.insert(board.name.into(), counted(board, &counter))),
             Err(reason) => println!("skipped {}: {reason}", board.name),
         }

@@ -1,5 +1,6 @@
 //! By RTT, Segger's Real-Time Transfer: ring buffers in RAM, which a probe finds by the symbol `_SEGGER_RTT` and reads
-//! while the chip runs. Channel 0 has the log, channel 1 the frames. Nothing is dropped: where a buffer is full, the chip
+//! while the chip runs. Channel 0 has the log, channel 1 the frames,
+//! in [`digits`]. Nothing is dropped: where a buffer is full, the chip
 //! waits for the probe.
 
 use core::arch::asm;
@@ -9,6 +10,7 @@ use rtt_target::ChannelMode::BlockIfFull;
 use rtt_target::{UpChannel, rtt_init, set_defmt_channel};
 use semihosting::process;
 
+use crate::digits;
 use crate::status::Status;
 
 /// Nothing goes wrong: there is only waiting.
@@ -22,7 +24,7 @@ impl Link {
     /// Sets the channels up; the log reaches the host from here on. To be called once.
     #[must_use]
     pub fn start() -> Self {
-        // Probes know by its name that the first one is defmt's. The log is short; a frame of the picture is about 800 bytes.
+        // Probes know by its name that the first one is defmt's. The log is short; a frame of the picture is about 1600 digits, and goes in parts.
         let channels = rtt_init! {
             up: {
                 0: { size: 256, mode: BlockIfFull, name: "defmt" }
@@ -48,7 +50,9 @@ pub struct Wire(UpChannel);
 
 impl Wire {
     pub(super) fn put(&mut self, bytes: &[u8]) -> Result<(), Error> {
-        self.0.write(bytes);
+        for &byte in bytes {
+            self.0.write(&digits::of(byte));
+        }
         Ok(())
     }
 }

@@ -115,6 +115,7 @@ struct Report {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     files::check_writable(&arguments.output)?;
     let board = board::by_name(&arguments.board).ok_or_else(|| Failure::input("no such board"))?;
+    let machine = Machine::of(board)?;
     let scene = arguments.scene.load_for_chip()?;
     let (header, sizes) = scene.engine.inspect(scene.blob.bytes())?;
     let failure = |error: EmulateError| match error {
@@ -126,7 +127,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     room(board, board.blob(scene.engine.id()), bytes.len() as u64, || help(board, &scene, &header, &sizes))
         .map_err(failure)?;
 
-    let machine = Machine::of(board);
     machine.version().map_err(failure)?;
     let hits = arguments.hits.map(Way::from);
     let wanted = Wanted { board, blob: bytes, hits, count: false };
@@ -264,7 +264,7 @@ fn text(arguments: &Arguments, report: &Report) -> String {
 }
 
 /// What would make a blob fit.
-fn help(board: &Board, scene: &Scene, header: &Header, sizes: &Sizes) -> String {
+pub(super) fn help(board: &Board, scene: &Scene, header: &Header, sizes: &Sizes) -> String {
     let triangles = u64::from(header.counts.triangles);
     let bytes = scene.blob.bytes().len() as u64;
     // In proportion, a fiftieth less for what does not shrink with the triangles.

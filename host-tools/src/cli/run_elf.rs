@@ -44,13 +44,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let failure = |error: EmulateError| {
         if error.is_input() { Failure::input(error.to_string()) } else { Failure::check(error.to_string()) }
     };
+    let machine = Machine::of(board).map_err(failure)?;
     let elf = Elf::read(&arguments.elf, board).map_err(failure)?;
     let blob = arguments.blob.as_deref().map(files::read).transpose()?;
     if let Some(blob) = &blob {
         let place = elf.blob_place.unwrap_or(Region { start: 0, length: 0 });
         room(board, place, blob.len() as u64, || "a smaller blob".into()).map_err(failure)?;
     }
-    Machine::of(board).version().map_err(failure)?;
+    machine.version().map_err(failure)?;
 
     let bar = progress::spinner("running");
     let limit = Duration::from_secs(arguments.timeout);

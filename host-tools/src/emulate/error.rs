@@ -56,6 +56,17 @@ pub enum EmulateError {
         /// What cargo says.
         output: String,
     },
+    /// QEMU has no such board.
+    #[error(
+        "{board} ({chip}) cannot be emulated: QEMU has no such machine; microbit and hifive1 can, and `intray flash` takes a \
+         scene to a real {board}"
+    )]
+    NoMachine {
+        /// The board's name.
+        board: &'static str,
+        /// Its chip.
+        chip: &'static str,
+    },
     /// QEMU is not there.
     #[error(
         "{program} is not installed; `cargo xtask setup` installs it where it can (Debian has it in qemu-system-arm and \
@@ -132,7 +143,7 @@ pub enum EmulateError {
 }
 
 impl EmulateError {
-    pub(super) fn folder(error: io::Error) -> Self {
+    pub(crate) fn folder(error: io::Error) -> Self {
         Self::Folder(error)
     }
 

@@ -136,7 +136,7 @@ impl Wanted<'_> {
         transport: Transport,
         marks: bool,
     ) -> Result<(), EmulateError> {
-        let Board { target, package, .. } = *self.board;
+        let Board { target, package, feature, .. } = *self.board;
         // A name that stays the same from build to build, so that cargo knows what it has.
         let blob = path.with_extension("blob");
         files::write_atomically(&blob, self.blob)?;
@@ -154,9 +154,8 @@ impl Wanted<'_> {
         ];
         let mut arguments =
             vec!["build", "--package", package, "--bin", package, "--target", target, "--profile", "firmware"];
-        if transport == Transport::Rtt {
-            arguments.extend(["--features", "rtt"]);
-        }
+        let rtt = (transport == Transport::Rtt).then_some("rtt");
+        arguments.extend(feature.into_iter().chain(rtt).flat_map(|feature| ["--features", feature]));
         repository
             .cargo(&arguments, &variables)
             .map_err(|output| EmulateError::Build { package: package.into(), output })?;

@@ -4,7 +4,7 @@ use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 
-use firmware_rt::board::Board;
+use firmware_rt::board::{Board, HIFIVE1, MICROBIT};
 use firmware_rt::status::Status;
 
 use super::EmulateError;
@@ -23,14 +23,17 @@ pub struct Machine {
 
 impl Machine {
     /// The machine of a board.
-    #[must_use]
-    pub fn of(board: &Board) -> Self {
-        let (program, arguments): (_, &[_]) = match board.target {
-            "thumbv6m-none-eabi" => ("qemu-system-arm", &["-M", "microbit"]),
+    ///
+    /// # Errors
+    /// [`EmulateError::NoMachine`] where QEMU has none.
+    pub fn of(board: &Board) -> Result<Self, EmulateError> {
+        let (program, arguments): (_, &[_]) = match *board {
+            MICROBIT => ("qemu-system-arm", &["-M", "microbit"]),
             // Revision B starts where the flash of the real board does.
-            _ => ("qemu-system-riscv32", &["-M", "sifive_e,revb=true", "-bios", "none"]),
+            HIFIVE1 => ("qemu-system-riscv32", &["-M", "sifive_e,revb=true", "-bios", "none"]),
+            Board { name: board, chip, .. } => return Err(EmulateError::NoMachine { board, chip }),
         };
-        Self { board: board.name, program, arguments }
+        Ok(Self { board: board.name, program, arguments })
     }
 
     /// The program.

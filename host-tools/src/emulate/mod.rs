@@ -37,7 +37,7 @@ use process::Process;
 /// # Errors
 /// What is missing.
 pub fn check(board: &Board) -> Result<(), EmulateError> {
-    Machine::of(board).version()?;
+    Machine::of(board)?.version()?;
     firmware::check_board(board)
 }
 
@@ -118,7 +118,7 @@ impl Run<'_> {
     }
 
     fn listen(&self, observer: &mut impl Observer, frames: &mut Frames) -> Result<Option<Counts>, EmulateError> {
-        let machine = Machine::of(self.board);
+        let machine = Machine::of(self.board)?;
         let folder = tempfile::Builder::new().prefix("intray-").tempdir().map_err(EmulateError::folder)?;
         let mut pieces = Vec::new();
         for (number, piece) in self.blob.unwrap_or_default().chunks(machine::PIECE).enumerate() {

@@ -68,7 +68,7 @@ impl Process {
             })
         });
         let deadline = Instant::now() + limit;
-        let file = Tail { path: file.into(), file: None };
+        let file = Tail::new(file);
         Ok(Self { name, child, output, complaints, said: String::new(), file, deadline, limit, status: None })
     }
 
@@ -136,14 +136,23 @@ impl Drop for Process {
 
 /// A file that grows, and may not be there yet.
 #[derive(Debug)]
-struct Tail {
+pub struct Tail {
     path: PathBuf,
     file: Option<File>,
 }
 
 impl Tail {
+    /// From its beginning.
+    #[must_use]
+    pub fn new(path: &Path) -> Self {
+        Self { path: path.into(), file: None }
+    }
+
     /// What has been added.
-    fn read(&mut self) -> std::io::Result<Vec<u8>> {
+    ///
+    /// # Errors
+    /// The system's.
+    pub fn read(&mut self) -> std::io::Result<Vec<u8>> {
         if self.file.is_none() {
             match File::open(&self.path) {
                 Ok(file) => self.file = Some(file),

@@ -24,8 +24,8 @@ impl Chips {
     pub(super) fn find(machines: impl Iterator<Item = Machine>, limit: Duration) -> (Self, Vec<String>) {
         let (mut counters, mut notes) = (BTreeMap::new(), Vec::new());
         for (machine, board) in machines.filter_map(|machine| Some((machine, machine.board()?))) {
-            let there = emulate::check(board).map_err(|error| error.to_string());
-            match there.and_then(|()| Counter::provide(&machine::Machine::of(board))) {
+            let there = emulate::check(board).and_then(|()| machine::Machine::of(board));
+            match there.map_err(|error| error.to_string()).and_then(|emulator| Counter::provide(&emulator)) {
                 Ok(counter) => drop(counters.insert(machine, counter)),
                 Err(reason) => notes.push(format!("There are no rows of {} ({}): {reason}.", board.name, board.chip)),
             }

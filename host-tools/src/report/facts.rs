@@ -27,7 +27,7 @@ pub fn machine() -> MachineFacts {
 /// The versions of the program and of the tools that there are.
 #[must_use]
 pub fn versions() -> BTreeMap<String, String> {
-    let tools = BOARDS.map(|board| Machine::of(board).program());
+    let tools = BOARDS.into_iter().filter_map(|board| Some(Machine::of(board).ok()?.program()));
     let tools = std::iter::once("rustc").chain(tools);
     let found = tools.filter_map(|tool| Some((tool.to_owned(), version(tool)?)));
     found.chain([("intray".to_owned(), env!("CARGO_PKG_VERSION").to_owned())]).collect()

@@ -73,7 +73,7 @@ impl Chip {
     /// # Errors
     /// What is missing here to build or to emulate it.
     pub fn provide(board: &'static Board, engine: &'static dyn Engine, cases: &[Case]) -> Result<Self, EmulateError> {
-        let emulator = Emulator::of(board);
+        let emulator = Emulator::of(board)?;
         emulator.version()?;
         let depth = depth(engine.name(), board);
         let needing = union(cases, depth);

@@ -17,6 +17,7 @@ use host_tools::emulate::firmware::{Transport, Wanted};
 use host_tools::emulate::frames::Frames;
 use host_tools::emulate::log::Log;
 use host_tools::engine;
+use host_tools::flash::digits::Digits;
 use host_tools::import::{Embedded, load_from};
 use host_tools::prepare::{Blob, Options};
 use tests::boards::boards;
@@ -103,12 +104,13 @@ fn heard(board: &'static Board, elf: &Elf, blob: &[u8]) -> (Vec<String>, Frames)
     let Running { probe, .. } = &mut Running::start(board, elf, blob, folder.path());
     let rtt = Rtt { address: elf.symbol("_SEGGER_RTT").unwrap() as u32 };
     let (mut lines, mut frames, mut log) = (Vec::<String>::new(), Frames::default(), Log::new(elf).unwrap());
+    let mut digits = Digits::default();
     let begin = Instant::now();
     while lines.last().is_none_or(|line| !line.contains("the end, status")) {
         assert!(begin.elapsed() < LIMIT, "{lines:?}");
         probe.run_for(Duration::from_millis(2));
         log.take(&rtt.take(probe, 0), &mut |line| lines.push(line.into()));
-        frames.take(&rtt.take(probe, 1)).unwrap();
+        frames.take(&digits.take(&rtt.take(probe, 1)).unwrap()).unwrap();
     }
     // A breakpoint that no debugger takes has become a fault by then, of which nothing is to be said.
     probe.run_for(Duration::from_millis(50));

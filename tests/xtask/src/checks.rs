@@ -46,6 +46,10 @@ pub(crate) fn steps(long: bool) -> Vec<Step> {
             let line = format!("cargo clippy -p {package} --target {target}{features} -- -D warnings");
             steps.push(Step::new(format!("lints of {package}{features}"), Task::new(&line)).needing(tools));
         }
+        if package == "firmware-cortexm" {
+            let line = format!("cargo clippy -p {package} --target {target} --features pico,rtt -- -D warnings");
+            steps.push(Step::new("lints of the Pico's firmware", Task::new(&line)).needing(tools));
+        }
         let line = format!("cargo clippy -p probe --target {target} -- -D warnings");
         steps.push(Step::new(format!("lints of the probe for {target}"), Task::new(&line)).needing(tools));
         // As `cargo run` builds it, which must fit too.
