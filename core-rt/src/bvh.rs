@@ -124,7 +124,7 @@ pub struct Bvh<'a, P: Profile> {
     pub triangles: Mesh<'a, P>,
     /// Spheres in the order of the leaves; none where the profile has none.
     pub spheres: &'a [<P::Kernel as Kernel>::Sphere],
-    /// The id of each primitive: its index in the file.
+    /// The id of each primitive, where records of triangles have none.
     pub ids: Integers<'a>,
 }
 
@@ -137,6 +137,13 @@ impl<'a, P: Profile> Bvh<'a, P> {
             return None;
         }
         self.spheres.get(index.checked_sub(self.triangles.len())? as usize)
+    }
+
+    /// The id of a primitive: its index in the file; past the end the largest number.
+    #[inline]
+    #[must_use]
+    pub fn id(&self, index: u32) -> u32 {
+        if P::NEEDS.has(Need::Ids) && !self.ids.is_empty() { self.ids.get(index) } else { self.triangles.id(index) }
     }
 
     /// The boxes of all primitives, triangles first.
@@ -285,7 +292,7 @@ impl<P: Profile> Intersect<P::Kernel> for Bvh<'_, P> {
                     None => true,
                     Some(best) => match P::Kernel::order(&depth, best) {
                         Ordering::Less => true,
-                        Ordering::Equal => self.ids.get(index) < self.ids.get(hit),
+                        Ordering::Equal => self.id(index) < self.id(hit),
                         Ordering::Greater => false,
                     },
                 };

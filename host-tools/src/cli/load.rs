@@ -17,7 +17,7 @@ use crate::files;
 use crate::import::{self, Imported};
 use crate::model::Model;
 use crate::picture::{SIZES, size_is_allowed};
-use crate::prepare::{Blob, Degenerates, Options, losses, unplaced};
+use crate::prepare::{Blob, Degenerates, Options, Prefer, losses, unplaced};
 use crate::textures;
 use crate::tree::TreeOptions;
 
@@ -211,9 +211,10 @@ impl SceneArguments {
     }
 
     fn options(&self) -> Options {
-        let tree = TreeOptions::default();
+        let prefer = Prefer::from(self.prefer.unwrap_or_default());
+        let tree = prefer.tree();
         Options {
-            prefer: self.prefer.unwrap_or_default().into(),
+            prefer,
             tree: self.leaf.map_or(tree, |leaf_max| TreeOptions { leaf_max, leaf_always: true, ..tree }),
             knobs: self.knobs.into(),
             grid_bits: self.grid_bits,
