@@ -140,13 +140,19 @@ fn answer(arguments: &Arguments) -> Result<(), Failure> {
     let asked_chip = arguments.chip.as_deref().map(|name| chip(&chips, name)).transpose()?;
     let isas: Vec<Isa> =
         Isa::ALL.into_iter().filter(|&isa| asked_chip.is_none_or(|chip| chip.isa() == Some(isa))).collect();
-    let asked = asked(arguments, &isas)?;
+    let asked = asked(arguments, &isas, asked_chip)?;
     if let Some(chip) = asked_chip {
         let judged = Judged::new(chip, &asked.needs);
-        return if arguments.json {
-            output::json(&report(&asked, &[judged]))
+        if arguments.json {
+            output::json(&report(&asked, &[judged]))?;
         } else {
-            output::line(&single::text(&asked, &judged))
+            output::line(&single::text(&asked, &judged))?;
+        }
+        return match judged.margin.filter(|margin| !margin.fits()) {
+            None => Ok(()),
+            Some(margin) => {
+                Err(Failure::check(format!("{} has {} too few for it", chip.name, single::missing(margin))))
+            }
         };
     }
     let judged: Vec<Judged<'_>> = chips.iter().map(|chip| Judged::new(chip, &asked.needs)).collect();
@@ -171,8 +177,8 @@ fn chip<'a>(chips: &'a [Chip], name: &str) -> Result<&'a Chip, Failure> {
     }
 }
 
-/// Reads the scene, and finds what it takes.
-fn asked(arguments: &Arguments, isas: &[Isa]) -> Result<Asked, Failure> {
+/// Reads the scene, and finds what it takes; a blob that is larger than the chip that was asked for is refused at once.
+fn asked(arguments: &Arguments, isas: &[Isa], chip: Option<&Chip>) -> Result<Asked, Failure> {
     let scene = arguments.scene.load_for_chip()?;
     let (header, sizes) = scene.engine.inspect(scene.blob.bytes())?;
     let name = arguments.scene.scene.display().to_string();
@@ -180,9 +186,19 @@ fn asked(arguments: &Arguments, isas: &[Isa]) -> Result<Asked, Failure> {
         error if error.is_input() => Failure::input(format!("{name}: {error}")),
         error => Failure::check(error.to_string()),
     };
+    let bytes = scene.blob.bytes().len() as u64;
+    if let Some(chip) = chip.filter(|chip| bytes > chip.flash) {
+        return Err(Failure::input(format!(
+            "{name}: the blob has {bytes} bytes, and {} has {} of flash: {} too many, without its code. What would help: {}",
+            chip.name,
+            chip.flash,
+            bytes - chip.flash,
+            smaller(&scene, &header, &sizes, chip.flash)
+        )));
+    }
     let traits = Traits::new(scene.engine.id(), &header);
-    for isa in isas {
-        firmware::check(isa.board(), &traits).map_err(failure)?;
+    for board in isas.iter().flat_map(|isa| isa.boards()) {
+        firmware::check(board, &traits).map_err(failure)?;
     }
     let limit = Duration::from_secs(arguments.timeout);
     let mut needs = Vec::new();

@@ -1,6 +1,6 @@
 //! Cores, and which of our programs run on them.
 
-use firmware_rt::board::{Board, HIFIVE1, MICROBIT};
+use firmware_rt::board::{Board, HIFIVE1, MICROBIT, ROOMY};
 use serde::Serialize;
 
 /// An instruction set that firmware is built for.
@@ -26,12 +26,12 @@ impl Isa {
         }
     }
 
-    /// The board whose firmware is linked, and run in an emulator, for all chips of it.
+    /// The boards whose firmware is linked, and run in an emulator, for all chips of it: the first that a scene fits.
     #[must_use]
-    pub const fn board(self) -> &'static Board {
+    pub const fn boards(self) -> &'static [&'static Board] {
         match self {
-            Self::Thumbv6m => &MICROBIT,
-            Self::Rv32imac => &HIFIVE1,
+            Self::Thumbv6m => &[&MICROBIT, &ROOMY],
+            Self::Rv32imac => &[&HIFIVE1],
         }
     }
 }

@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
+use firmware_rt::board::Board;
 use host_tools::emulate::counter::Counter;
+use host_tools::emulate::elf::Elf;
 use host_tools::emulate::firmware::Wanted;
 use host_tools::emulate::machine::Machine;
 use host_tools::emulate::{EmulateError, Observer, Run};
@@ -66,8 +68,7 @@ pub struct Measured {
     pub notes: Vec<String>,
 }
 
-/// Links the firmware of a blob, and draws its picture in the emulator if both are there: a blob may be too large for the
-/// board that is emulated, and still fit a chip.
+/// Links the firmware of a blob, and draws its picture in the emulator if both are there.
 ///
 /// # Errors
 /// Where the firmware cannot be built, or ends in anything but a picture.
@@ -78,8 +79,7 @@ pub fn measure(
     limit: Duration,
     observer: &mut impl Observer,
 ) -> Result<Measured, EmulateError> {
-    let board = isa.board();
-    let elf = Wanted { board, blob, hits: None, count: false }.provide()?;
+    let (board, elf) = linked(isa, blob, kernel)?;
     let mut measured = Measured {
         need: Need {
             isa,
@@ -87,7 +87,7 @@ pub fn measure(
             text_bytes: elf.text_bytes,
             scene_bytes: blob.len() as u64,
             static_bytes: elf.static_bytes,
-            stack_bytes: board.stack.length.into(),
+            stack_bytes: isa.boards().first().map_or(0, |board| board.stack.length).into(),
             stack_is_measured: false,
             instructions: None,
             cycles: BTreeMap::new(),
@@ -95,9 +95,9 @@ pub fn measure(
         notes: Vec::new(),
     };
     let Measured { need, notes } = &mut measured;
-    let room = board.blob(kernel).length;
-    let unmeasured = "so there are no seconds, and the stack is taken to be what is reserved for it";
-    if blob.len() as u64 > u64::from(room) {
+    let unmeasured = "so there are no seconds, and the stack is taken to be what firmware reserves for it";
+    if !takes(board, blob, kernel) {
+        let room = board.blob(kernel).length;
         notes.push(format!("{}: the emulated {} has {room} bytes for a blob, {unmeasured}", isa.name(), board.name));
         return Ok(measured);
     }
@@ -119,4 +119,25 @@ pub fn measure(
         need.cycles = counts.cycles;
     }
     Ok(measured)
+}
+
+/// Whether a board's flash has room for a blob.
+fn takes(board: &Board, blob: &[u8], kernel: u16) -> bool {
+    blob.len() as u64 <= u64::from(board.blob(kernel).length)
+}
+
+/// The firmware of a blob, for the first board that has room for both, else for the last.
+fn linked(isa: Isa, blob: &[u8], kernel: u16) -> Result<(&'static Board, Elf), EmulateError> {
+    let provide = |board| Ok((board, Wanted { board, blob, hits: None, count: false }.provide()?));
+    let Some((last, smaller)) = isa.boards().split_last() else {
+        return Err(EmulateError::Damaged("no board is emulated"));
+    };
+    for board in smaller.iter().filter(|board| takes(board, blob, kernel)) {
+        match provide(board) {
+            // Its code may be too large for its part of the flash.
+            Err(EmulateError::Build { .. }) => {}
+            done => return done,
+        }
+    }
+    provide(last)
 }
