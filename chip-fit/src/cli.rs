@@ -53,28 +53,30 @@ pub(crate) struct Asked {
 }
 
 impl Asked {
-    /// What would make it fit a chip that it misses, in words; empty where nothing is known to.
+    /// What would make it fit a chip that it misses, in words.
     pub(crate) fn help(&self, need: &Need, chip: &Chip, margin: Margin) -> String {
+        let needs = self.header.needs;
+        let shallow = (needs.branches() && self.header.max_depth > 0).then_some("`--depth 0`");
+        let narrow = (self.scene.engine.name() != "exact14").then_some("the kernel exact14");
+        let gray = (needs.pixel_bytes() > 1).then_some("`--format gray8`");
+        let or = |means: &[Option<&str>]| means.iter().flatten().copied().collect::<Vec<_>>().join(" or ");
         let mut help = Vec::new();
-        if margin.flash < 0 {
-            let room = need.room(chip.flash);
-            if room == 0 {
-                help.push("less code, which is more than its flash by itself (`--depth 0`, the kernel exact14)".into());
-            }
+        let room = need.room(chip.flash);
+        if margin.flash < 0 && room > 0 {
             help.push(smaller(&self.scene, &self.header, &self.sizes, room));
+        } else if margin.flash < 0 {
+            help.push(match or(&[shallow, narrow]) {
+                means if means.is_empty() => "nothing, as the code alone is larger than the flash".into(),
+                means => format!("less code, which alone is larger than the flash, by {means}"),
+            });
         }
         if margin.ram < 0 {
-            if self.header.needs.branches() {
-                help.push("less RAM by `--depth 0`, so that no rays wait for others".into());
-            }
-            if self.scene.engine.name() != "exact14" {
-                help.push("less RAM by the kernel exact14".into());
-            }
-            if self.header.needs.pixel_bytes() > 1 {
-                help.push("less RAM by pixels of a byte (`--format gray8`)".into());
-            }
+            help.push(match or(&[shallow, narrow, gray]) {
+                means if means.is_empty() => "nothing, as variables and stack are the least that there are".into(),
+                means => format!("less RAM by {means}"),
+            });
         }
-        help.retain(|means: &String| !means.is_empty());
+        help.retain(|means| !means.is_empty());
         help.join("; ")
     }
 }

@@ -102,8 +102,8 @@ impl Core {
         }
     }
 
-    /// The counter's model of its cycles, or of a core that is no quicker; `None` where there is none, so that an instruction
-    /// takes a cycle at the least.
+    /// The counter's model of its cycles, or of the nearest Cortex-M that has one; `None` on RISC-V, which has none, so that an
+    /// instruction takes a cycle at the least.
     #[must_use]
     pub const fn model(self) -> Option<&'static str> {
         match self {

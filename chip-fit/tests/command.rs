@@ -190,7 +190,11 @@ fn what_does_not_fit_is_a_failed_check_and_what_would_help_is_said() {
         stdout.starts_with("scene.toml at 24x18 by exact14 does not fit STM32F030F4 (STM32F0, Cortex-M0)\n"),
         "{stdout}"
     );
-    assert!(stdout.contains(" too many: ") && stdout.contains("\nwhat would help: less code, "), "{stdout}");
+    assert!(
+        stdout.contains(" too many: ")
+            && stdout.contains("\nwhat would help: nothing, as the code alone is larger than the flash\n"),
+        "{stdout}"
+    );
     assert!(
         stderr.starts_with("error: STM32F030F4 has ") && stderr.ends_with(" bytes of flash too few for it\n"),
         "{stderr}"
@@ -198,7 +202,34 @@ fn what_does_not_fit_is_a_failed_check_and_what_would_help_is_said() {
     let (stdout, _, status) = said(command(&folder, "scene.toml --chip STM32F030F4 --json"));
     let found: Value = serde_json::from_str(&stdout).unwrap();
     assert_eq!((status, found["chips"][0]["fits"].as_bool()), (Some(1), Some(false)));
-    assert!(found["chips"][0]["help"].as_str().is_some_and(|help| help.starts_with("less code")), "{found}");
+    assert!(found["chips"][0]["help"].as_str().is_some_and(|help| help.starts_with("nothing, ")), "{found}");
+}
+
+/// Whoever does what is said gets what was missed.
+#[test]
+fn what_is_said_to_help_does() {
+    if !can_measure() {
+        return;
+    }
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
+    let folder = folder();
+    let run = |scene: &str, chip: &str, rest: &str| {
+        let scene = scenes.join(scene).join("scene.toml");
+        let mut command = command(&folder, "--json");
+        command.arg(scene).args(["--chip", chip, "--size", "32x24"]).args(rest.split_whitespace());
+        let (stdout, stderr, status) = said(command);
+        let found: Value = serde_json::from_str(&stdout).unwrap_or_else(|_| panic!("{stderr}"));
+        (found["chips"][0]["help"].as_str().unwrap_or_default().to_owned(), status)
+    };
+    let (help, status) = run("bench-1k", "STM32F030C8", "");
+    let fewer = help.strip_prefix("fewer triangles (`intray prep --triangles ").and_then(|rest| rest.split('`').next());
+    assert_eq!(status, Some(1), "{help}");
+    let fewer = format!("--triangles {}", fewer.unwrap_or_else(|| panic!("{help}")));
+    assert_eq!(run("bench-1k", "STM32F030C8", &fewer), (String::new(), Some(0)), "{fewer}");
+
+    let (help, status) = run("gallery/spheres", "MSPM0L1306", "");
+    assert_eq!((help.as_str(), status), ("less RAM by `--depth 0` or `--format gray8`", Some(1)));
+    assert_eq!(run("gallery/spheres", "MSPM0L1306", "--depth 0 --format gray8"), (String::new(), Some(0)));
 }
 
 #[test]

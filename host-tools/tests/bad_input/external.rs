@@ -1,4 +1,5 @@
 //! `intray fit`, which is a program of its own: where it is absent, and what it is given where it is there.
+#![cfg(unix)]
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,11 +7,18 @@ use std::process::Command;
 
 use crate::command::{Folder, text};
 
-/// `intray` in a folder of its own, since builds may have put the other program beside it.
+/// `intray` in a folder of its own, since builds may have put the other program beside it. Others write it: what this process
+/// writes, the commands of other tests could still have open, and it cannot be run then.
 fn apart(folder: &Folder) -> PathBuf {
-    let path = folder.path(&format!("intray{}", std::env::consts::EXE_SUFFIX));
-    fs::copy(env!("CARGO_BIN_EXE_intray"), &path).unwrap();
+    let path = folder.path("intray");
+    assert!(Command::new("cp").arg(env!("CARGO_BIN_EXE_intray")).arg(&path).status().unwrap().success());
     path
+}
+
+/// A program that says what it is given, and ends with a status.
+fn script(path: &Path, says: &str, status: i32) {
+    let line = format!("printf '#!/bin/sh\\necho \"{says}: $*\"\\nexit {status}\\n' > \"$0\" && chmod +x \"$0\"");
+    assert!(Command::new("sh").arg("-c").arg(line).arg(path).status().unwrap().success());
 }
 
 #[test]
@@ -36,26 +44,19 @@ fn where_it_is_absent_the_command_that_installs_it_is_said() {
 }
 
 #[test]
-#[cfg(unix)]
 fn where_it_is_there_it_is_given_everything_and_its_status_is_ours() {
-    use std::os::unix::fs::PermissionsExt;
-
     let folder = Folder::with_triangle();
     let intray = apart(&folder);
-    // Beside, and on the PATH alone; what is beside counts.
     fs::create_dir(folder.path("path")).unwrap();
-    for (name, says, status) in [("path/intray-fit", "on the PATH", 0), ("intray-fit", "beside", 1)] {
-        folder.write(name, format!("#!/bin/sh\necho \"{says}: $*\"\nexit {status}\n").as_bytes());
-        fs::set_permissions(folder.path(name), fs::Permissions::from_mode(0o755)).unwrap();
-    }
+    script(&folder.path("path/intray-fit"), "on the PATH", 0);
     let run = |line: &str| {
         let output = Command::new(&intray).args(line.split(' ')).env("PATH", folder.path("path")).output().unwrap();
         (text(&output.stdout), text(&output.stderr), output.status.code())
     };
-    let beside = |rest: &str| (format!("beside: {rest}\n"), String::new(), Some(1));
-    for rest in ["scene.obj --chip RP2040 --json", "--help", "--version scene.obj", "--no-such-option", "-- --chip"] {
-        assert_eq!(run(&format!("fit {rest}")), beside(rest));
-    }
-    fs::remove_file(folder.path("intray-fit")).unwrap();
     assert_eq!(run("fit a b"), ("on the PATH: a b\n".into(), String::new(), Some(0)));
+    // What is beside counts.
+    script(&folder.path("intray-fit"), "beside", 1);
+    for rest in ["scene.obj --chip RP2040 --json", "--help", "--version scene.obj", "--no-such-option", "a -- --chip"] {
+        assert_eq!(run(&format!("fit {rest}")), (format!("beside: {rest}\n"), String::new(), Some(1)));
+    }
 }
