@@ -3,7 +3,7 @@
 //!
 //! Boards for which the compiler's library is absent are skipped, with a line that says so.
 
-use std::fs;
+use std::fs::{self, File};
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -41,6 +41,10 @@ fn default_firmware(board: &Board) -> Vec<u8> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
     let target = std::path::absolute(target).unwrap();
+    // One at a time, and not while scenes' firmware is built: cargo has one place for all firmware of a package.
+    fs::create_dir_all(target.join("firmware")).unwrap();
+    let lock = File::create(target.join("firmware/lock")).unwrap();
+    lock.lock().unwrap();
     let mut command = Command::new(env!("CARGO"));
     command.args(["build", "--quiet", "--profile", "firmware", "--package", board.package, "--bin", board.package]);
     command.args(["--target", board.target]).env("CARGO_TARGET_DIR", &target).current_dir(&root);

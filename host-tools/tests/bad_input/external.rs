@@ -30,8 +30,9 @@ fn where_it_is_absent_the_command_that_installs_it_is_said() {
          is neither beside this program nor on the PATH; `cargo install --path {}` installs it\n",
         root.join("chip-fit").display()
     );
+    let intray = apart(&folder);
     for line in ["fit scene.obj", "fit --help", "fit"] {
-        let output = Command::new(apart(&folder))
+        let output = Command::new(&intray)
             .args(line.split(' '))
             .current_dir(folder.path(""))
             .env("PATH", folder.path(""))
