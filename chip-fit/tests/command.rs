@@ -114,7 +114,7 @@ fn a_blob_that_is_larger_than_the_flash_is_refused_before_anything_is_built() {
     let bytes: u64 = rest.split(' ').next().unwrap().parse().unwrap();
     let expected = format!(
         "{begin}{bytes} bytes, and STM32F030F4 has 16384 of flash: {} too many, without its code. What would help: fewer \
-         triangles (`intray prep --triangles {}` instead of 1152)\n",
+         triangles (`intray prep --triangles {}` instead of 1152); triangles that share vertices, for time (`--prefer size`)\n",
         bytes - 16384,
         1152 * 16384 / bytes * 49 / 50
     );

@@ -1,6 +1,7 @@
 //! What would make a scene fit where it is too large.
 
 use core_rt::blob::Header;
+use core_rt::profile::Need;
 
 use super::load::Scene;
 use crate::engine::Sizes;
@@ -15,6 +16,9 @@ pub fn smaller(scene: &Scene, header: &Header, sizes: &Sizes, room: u64) -> Stri
     let mut help = Vec::new();
     if fitting > 0 {
         help.push(format!("fewer triangles (`intray prep --triangles {fitting}` instead of {triangles})"));
+    }
+    if header.needs.has(Need::WholeTriangles) {
+        help.push("triangles that share vertices, for time (`--prefer size`)".into());
     }
     if scene.engine.name() != "exact14" {
         help.push("the kernel exact14, whose records are the smallest".into());
