@@ -22,9 +22,12 @@ use crate::textures;
 use crate::tree::TreeOptions;
 
 /// A blob, with the kernel that it is for and what it was made from.
-pub(super) struct Scene {
-    pub(super) engine: &'static dyn Engine,
-    pub(super) blob: Blob,
+#[derive(Debug)]
+pub struct Scene {
+    /// The kernel.
+    pub engine: &'static dyn Engine,
+    /// The blob.
+    pub blob: Blob,
     /// Where the scene was not a blob already.
     pub(super) degenerates: Option<Degenerates>,
     /// Why the kernel was chosen, where nobody named it.
@@ -37,8 +40,12 @@ impl SceneArguments {
         self.load_for(ENGINES[0])
     }
 
-    /// The same, where a chip is to render it: with another kernel unless one is asked for.
-    pub(super) fn load_for_chip(&self) -> Result<Scene, Failure> {
+    /// Reads the scene and prepares it for a chip: with another kernel than a host's unless one is asked for. Warnings go to
+    /// stderr.
+    ///
+    /// # Errors
+    /// Where it cannot be read, or the kernel cannot hold it.
+    pub fn load_for_chip(&self) -> Result<Scene, Failure> {
         self.load_for(engine::by_id(Exact14::ID).unwrap_or(ENGINES[0]))
     }
 
