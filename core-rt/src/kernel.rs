@@ -184,6 +184,11 @@ pub trait Kernel: Copy + Debug + Default + Send + Sync + 'static {
     fn skip(ray: &Self::Ray) -> u32;
     /// The ray, prepared for boxes.
     fn path(ray: &Self::Ray) -> Self::Path;
+    /// The ray, prepared for boxes that are tested in the way that serves all octants.
+    #[inline(always)]
+    fn path_of_any(ray: &Self::Ray) -> Self::Path {
+        Self::path(ray)
+    }
     /// Whether [`Kernel::octant`] may be [`ANY_OCTANT`], so that the descent is compiled for it too.
     const ANY_OCTANT: bool = false;
     /// Which way a ray goes: bit a is set where it moves down along axis a. [`ANY_OCTANT`] for a ray whose boxes are tested

@@ -215,12 +215,24 @@ impl Needs {
     }
 }
 
+/// What gives way where flash and time compete. The picture is the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Prefer {
+    /// Flash: what is done often is in several copies, and what can be looked up is.
+    #[default]
+    Speed,
+    /// Time: everything is there once.
+    Size,
+}
+
 /// What is compiled in.
 pub trait Profile: Copy + Debug + Default + Send + Sync + 'static {
     /// The arithmetic.
     type Kernel: Kernel;
     /// Everything that a scene under this profile may need.
     const NEEDS: Needs;
+    /// What it is compiled for.
+    const PREFER: Prefer = Prefer::Speed;
 }
 
 /// Everything.

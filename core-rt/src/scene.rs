@@ -107,7 +107,7 @@ impl<'a, P: Profile> Scene<'a, P> {
     /// # Errors
     /// Whatever is wrong with it; see [`BlobError`].
     pub fn new_checked(bytes: &'a [u8]) -> Result<Self, BlobError> {
-        let (header, sections) = open(bytes, P::Kernel::ID)?;
+        let (header, sections) = open(bytes, P::Kernel::ID, P::PREFER)?;
         // A need that this version does not know cannot be met, nor named.
         if !header.needs.is_known()
             || usize::from(header.depth) > MAX_DEPTH
@@ -137,7 +137,7 @@ impl<'a, P: Profile> Scene<'a, P> {
     /// # Errors
     /// As [`Scene::new_checked`].
     pub fn header(bytes: &[u8]) -> Result<Header, BlobError> {
-        open(bytes, P::Kernel::ID).map(|(header, _)| header)
+        open(bytes, P::Kernel::ID, P::PREFER).map(|(header, _)| header)
     }
 }
 
