@@ -187,8 +187,9 @@ impl Needs {
 
     /// The first need that `self` has and `other` lacks.
     #[must_use]
+    #[inline(never)]
     pub fn first_missing_in(self, other: Self) -> Option<Need> {
-        Need::ALL.into_iter().find(|&need| self.has(need) && !other.has(need))
+        Need::ALL.iter().copied().find(|&need| self.has(need) && !other.has(need))
     }
 
     /// Whether surfaces have highlights.
@@ -201,6 +202,18 @@ impl Needs {
     #[must_use]
     pub const fn branches(self) -> bool {
         self.has(Need::Reflection) || self.has(Need::Refraction)
+    }
+
+    /// Whether surfaces may be more than matt.
+    #[must_use]
+    pub const fn lustres(self) -> bool {
+        self.highlights() || self.branches() || self.has(Need::TintedShadow)
+    }
+
+    /// Whether anything is between the corners of triangles.
+    #[must_use]
+    pub const fn weights(self) -> bool {
+        self.has(Need::SmoothNormals) || self.paint()
     }
 
     /// Whether surfaces are painted.

@@ -197,11 +197,15 @@ fn view<'a, P: Profile>(header: &Header, sections: &'a [u8]) -> Option<View<'a, 
         triangles: reader.records(counts.triangles)?,
         // What the profile lacks the scene was found not to need, and then there are none.
         spheres: if P::NEEDS.has(Need::Spheres) { reader.records(counts.spheres)? } else { &[] },
-        ids: reader.integers(primitives, header.needs.has(Need::WideIds))?,
+        ids: reader.integers(primitives, P::NEEDS.has(Need::WideIds) && header.needs.has(Need::WideIds))?,
     };
     let shading = Shading {
-        normal_indices: reader.integers(counts.smooth.checked_mul(3)?, header.needs.has(Need::WideNormals))?,
-        normals: reader.records(counts.normals)?,
+        normal_indices: if P::NEEDS.has(Need::SmoothNormals) {
+            reader.integers(counts.smooth.checked_mul(3)?, header.needs.has(Need::WideNormals))?
+        } else {
+            Integers::Narrow(&[])
+        },
+        normals: if P::NEEDS.has(Need::SmoothNormals) { reader.records(counts.normals)? } else { &[] },
         paint: Paint::read::<P>(&mut reader, header)?,
         materials: reader.records(counts.materials)?,
         lustres: reader.records(counts.lustres)?,

@@ -69,12 +69,14 @@ pub(crate) fn shade<'a, P: Profile>(
             diffuse = Colour::constant(&scene.frame.ambient);
         }
         for (number, light) in (0..).zip(scene.shading.lights) {
-            let Some(arriving) = arriving(scene, &surface, smooth, light, hit, stack, stats) else { continue };
+            let Some((light, towards, cosine)) = arriving(scene, &surface, smooth, light, hit, stack, stats) else {
+                continue;
+            };
             stats.light(number);
-            diffuse = diffuse.plus(Colour::lit(&arriving.light, arriving.cosine));
+            diffuse = diffuse.plus(Colour::lit(&light, cosine));
             if let Some((lustre, along)) = shine {
-                let lobe = lobe::<P>(lustre, along, normal, arriving.towards);
-                shining = shining.plus(Colour::lit(&arriving.light, lobe));
+                let lobe = lobe::<P>(lustre, along, normal, towards);
+                shining = shining.plus(Colour::lit(&light, lobe));
             }
         }
         colour = diffuse.reflected(&albedo);
@@ -142,10 +144,14 @@ impl<'a, P: Profile> Scene<'a, P> {
     #[inline(always)]
     fn surface(&self, ray: &RayOf<P>, hit: u32) -> Option<(Surface<SpaceOf<P>>, &'a Material)> {
         let material = self.material(hit)?;
-        let surface = match self.bvh.sphere(hit) {
+        let mut surface = match self.bvh.sphere(hit) {
             Some(sphere) => P::Kernel::resolve_sphere(ray, sphere),
             None => P::Kernel::resolve(ray, self.bvh.triangles.get(hit as usize)?),
         };
+        // What nothing reads need not be worked out.
+        if !P::NEEDS.weights() {
+            (surface.u, surface.v) = Default::default();
+        }
         Some((surface, material))
     }
 
@@ -165,7 +171,7 @@ impl<'a, P: Profile> Scene<'a, P> {
     /// What a material is more than matt.
     #[inline]
     pub(crate) fn lustre(&self, material: &Material) -> Option<&'a Lustre> {
-        if !P::NEEDS.highlights() && !P::NEEDS.branches() && !P::NEEDS.has(Need::TintedShadow) {
+        if !P::NEEDS.lustres() {
             return None;
         }
         self.shading.lustres.get(usize::from(material.lustre).wrapping_sub(1))

@@ -23,7 +23,7 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 use super::ray::Ray;
 use super::width::{Wide, Width};
 use crate::kernel::Vertices;
-use crate::num::{Triple, Word, bits, cross, narrow_dot, sub};
+use crate::num::{Triple, Word, cross, narrow_dot, sub};
 
 /// v0, e1, e2, n = N >> k (three fields each), then shift and material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
@@ -89,17 +89,20 @@ pub(super) fn pack<W: Width>(vertices: &Vertices, material: u32) -> Option<Trian
     if !vertices.as_flattened().iter().all(|c| grid.contains(c)) {
         return None;
     }
-    let [v0, v1, v2] = vertices.map(|v| v.map(i64::from));
+    let [v0, v1, v2] = vertices.map(|v| v.map(W::Word::from_i32));
     let (e1, e2) = (sub(v1, v0), sub(v2, v0));
-    let normal = cross(e1, e2); // below 2^(2 b) <= 2^58: twice the area of a projection onto a square of side 2^b
-    if normal == [0; 3] {
+    let normal = cross(e1, e2); // at most 2^(2 b), a word: twice the area of a projection onto a square of side 2^b
+    if normal == [W::Word::ZERO; 3] {
         return None;
     }
-    let shift = bits(e1).max(bits(e2)).max(bits(sub(v2, v1)));
+    let edges = [e1, e2, sub(v2, v1)];
+    let longest = edges.as_flattened().iter().fold(W::Word::ZERO, |longest, c| longest.max(c.magnitude()));
+    let shift = longest.magnitude_bits();
     let n = normal.map(|c| c >> (2 * shift).saturating_sub(W::NORMAL_BITS));
     let mut record = [W::Short::default(); 13];
     for (field, value) in record.iter_mut().zip([v0, e1, e2, n].as_flattened()) {
-        *field = W::Short::try_from(*value).ok()?;
+        // Corners and edges are on the grid, and n has NORMAL_BITS: 32 bits hold them.
+        *field = W::Short::try_from(value.low_i32().into()).ok()?;
     }
     let [.., meta] = &mut record;
     *meta = W::join_meta(shift, material)?;

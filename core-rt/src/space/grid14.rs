@@ -55,7 +55,8 @@ pub(crate) fn normalise(v: Triple<i32>) -> Option<Triple<I2F14>> {
     let half_shift = u32::from(square < 1 << 30); // the square is at least 2^28
     let y_q15 = (inverse_sqrt_u32(square << (2 * half_shift)) >> 1) as i32;
     // v / sqrt(square) = v y 2^half_shift / 2^30; to Q14.
-    Some(v.map(|c| I2F14::from_bits(round_shift(c * y_q15, 16 - half_shift) as i16)))
+    let unit = |c: i32| I2F14::from_bits(round_shift(c * y_q15, 16 - half_shift) as i16);
+    Some([unit(v[0]), unit(v[1]), unit(v[2])])
 }
 
 impl Space for Grid14 {
@@ -159,7 +160,8 @@ impl Space for Grid14 {
         dot_q28(a, b) >= 0
     }
 
-    #[inline]
+    #[cfg_attr(not(prefer_size), inline)]
+    #[cfg_attr(prefer_size, inline(never))]
     fn cosine(a: Self::Unit, b: Self::Unit) -> Option<U16F16> {
         let cosine_q28 = dot_q28(a, b);
         (cosine_q28 > 0).then(|| U16F16::from_bits((round_shift(cosine_q28, 12) as u32).min(1 << 16)))
