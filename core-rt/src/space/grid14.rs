@@ -142,7 +142,8 @@ impl Space for Grid14 {
     /// By the differences, which are below 2^30, rounded to 15 bits and shifted by at most 15: within half a unit and 2^-15 of
     /// the largest of them. Their products with weights of at most 2^14 are at most 2^29, and their sum 2^30. No hit's weights
     /// sum to more than 1 + 2^-11; what the shift to the left would lose of a larger sum is lost.
-    #[inline]
+    #[cfg_attr(not(prefer_size), inline)]
+    #[cfg_attr(prefer_size, inline(never))]
     fn blend([a, b, c]: Triple<i32>, u: I2F14, v: I2F14) -> i32 {
         let (p, q) = (b - a, c - a);
         let shift = bits([p, q, 0]).saturating_sub(15);
