@@ -40,7 +40,7 @@ pub(crate) fn arriving<P: Profile>(
     }
     let cosine = SpaceOf::<P>::cosine(smooth.map_or(surface.normal, |smooth| smooth.normal), towards)?;
     let mut tint = WHITE;
-    if P::NEEDS.has(Need::Shadows) {
+    if scene.shadows() {
         stats.ray(RayKind::Shadow);
         let from = &Surface { point: smooth.map_or(surface.point, |smooth| smooth.lifted), ..*surface };
         let shadow = if is_point {

@@ -72,11 +72,15 @@ pub enum Need {
     Gray8 = 1 << 27,
     /// Reflections that grow towards grazing angles.
     Schlick = 1 << 28,
+    /// More than one light.
+    SeveralLights = 1 << 30,
+    /// Rays that go on from surfaces and are followed. Without it, those see the background.
+    Bounces = 1 << 31,
 }
 
 impl Need {
     /// All of them.
-    pub const ALL: [Self; 29] = [
+    pub const ALL: [Self; 31] = [
         Self::PointLight,
         Self::DirectionalLight,
         Self::Shadows,
@@ -106,7 +110,15 @@ impl Need {
         Self::Rgb565,
         Self::Gray8,
         Self::Schlick,
+        Self::SeveralLights,
+        Self::Bounces,
     ];
+
+    /// Its bit in a header: 0 to 31.
+    #[must_use]
+    pub const fn bit(self) -> u32 {
+        (self as u32).trailing_zeros()
+    }
 }
 
 impl Display for Need {
@@ -141,6 +153,8 @@ impl Display for Need {
             Self::Rgb565 => "RGB565 output",
             Self::Gray8 => "gray output",
             Self::Schlick => "reflections after Schlick",
+            Self::SeveralLights => "several lights",
+            Self::Bounces => "rays that go on",
         })
     }
 }
@@ -153,7 +167,14 @@ impl Needs {
     /// None.
     pub const NONE: Self = Self(0);
     /// All.
-    pub const ALL: Self = Self((1 << Need::ALL.len()) - 1);
+    pub const ALL: Self = {
+        let (mut bits, mut index) = (0, 0);
+        while index < Need::ALL.len() {
+            bits |= Need::ALL[index] as u32;
+            index += 1;
+        }
+        Self(bits)
+    };
 
     /// From the bits of a header.
     #[must_use]

@@ -62,11 +62,8 @@ impl Tile {
                 return None;
             }
             let tile = Self { x, y, width: right.min(width - x), height: down.min(height - y) };
-            (x, y) = if tile.width < right || width - x == right {
-                (0, y.saturating_add(down))
-            } else {
-                (x + right, y)
-            };
+            (x, y) =
+                if tile.width < right || width - x == right { (0, y.saturating_add(down)) } else { (x + right, y) };
             Some(tile)
         })
     }

@@ -145,7 +145,13 @@ impl<P: Profile> Scene<'_, P> {
     /// The rays that may wait while a pixel is drawn.
     #[must_use]
     pub fn branches(&self) -> usize {
-        if self.frame.needs.branches() { usize::from(self.frame.max_depth) + 1 } else { 0 }
+        if self.frame.needs.has(Need::Bounces) { usize::from(self.frame.max_depth) + 1 } else { 0 }
+    }
+
+    /// Whether surfaces are in each other's way of light.
+    #[inline(always)]
+    pub(crate) fn shadows(&self) -> bool {
+        P::NEEDS.has(Need::Shadows) && self.frame.needs.has(Need::Shadows)
     }
 
     /// The ray of a camera, the scene's or one that looks [through](Camera::through) other places, that goes through a pixel;

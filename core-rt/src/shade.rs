@@ -68,7 +68,13 @@ pub(crate) fn shade<'a, P: Profile>(
         if P::NEEDS.has(Need::Ambient) {
             diffuse = Colour::constant(&scene.frame.ambient);
         }
-        for (number, light) in (0..).zip(scene.shading.lights) {
+        // One light takes no loop.
+        let (first, others) = match scene.shading.lights {
+            [first, others @ ..] => (Some(first), others),
+            [] => (None, &[][..]),
+        };
+        let others = if P::NEEDS.has(Need::SeveralLights) { others } else { &[] };
+        for (number, light) in (0..).zip(first.into_iter().chain(others)) {
             let Some((light, towards, cosine)) = arriving(scene, &surface, smooth, light, hit, stack, stats) else {
                 continue;
             };
@@ -130,7 +136,7 @@ fn smooth<P: Profile>(scene: &Scene<'_, P>, hit: u32, surface: &Surface<SpaceOf<
     }
     let mut lifted = surface.point;
     // A triangle with a normal far off its own is creased, and no part of a smooth surface.
-    if P::NEEDS.has(Need::Shadows) && normals.iter().all(|&normal| SpaceOf::<P>::near(normal, surface.normal)) {
+    if scene.shadows() && normals.iter().all(|&normal| SpaceOf::<P>::near(normal, surface.normal)) {
         let corners = P::Kernel::vertices(triangle).map(SpaceOf::<P>::point);
         let (low, high) = (P::Kernel::MARGIN, (1 << P::Kernel::GRID_BITS) - 1 - P::Kernel::MARGIN);
         let range = [low, high].map(|c| SpaceOf::<P>::point([c; 3]));

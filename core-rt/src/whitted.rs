@@ -49,13 +49,15 @@ pub(crate) fn radiance<P: Profile>(
     let mut total = ColourOf::<P>::default();
     let (mut ray, mut share, mut depth, mut hit) = (ray, WHITE, 0, hit);
     let mut taken;
-    branches.clear();
+    if P::NEEDS.has(Need::Bounces) {
+        branches.clear();
+    }
     loop {
         if let Some(shaded) = shade(scene, ray, hit, stack, stats) {
             total = total.plus(shaded.colour.reflected(&share));
             if let Some(lustre) = shaded.lustre {
                 for (next, share, kind) in go_on(scene, ray, hit, &shaded, lustre, &share).into_iter().flatten() {
-                    if depth < scene.frame.max_depth {
+                    if P::NEEDS.has(Need::Bounces) && depth < scene.frame.max_depth {
                         stats.ray(kind);
                         // There is room for one a level, and the one that is taken up again at once.
                         let _ = branches.push((next, share, depth + 1));
@@ -68,6 +70,9 @@ pub(crate) fn radiance<P: Profile>(
             total = total.plus(background(scene, ray).reflected(&share));
         }
         stats.next();
+        if !P::NEEDS.has(Need::Bounces) {
+            return total;
+        }
         let Some(next) = branches.pop() else { return total };
         (taken, share, depth) = next;
         ray = &taken;

@@ -8,6 +8,7 @@ use core_rt::blob::{Header, PREFIX_SIZE, Prefix};
 use core_rt::exact::{Exact14, Exact20, Exact29};
 use core_rt::hanika::{HanikaC, HanikaCd, HanikaCons};
 use core_rt::kernel::Kernel;
+use core_rt::profile::Need;
 use float_rt::{Float32, Float64};
 use zerocopy::FromBytes;
 
@@ -56,7 +57,7 @@ impl Traits {
     #[must_use]
     pub fn new(kernel: u16, header: &Header) -> Self {
         let depth = usize::from(header.depth).next_multiple_of(16).max(16);
-        let branches = match header.needs.branches() {
+        let branches = match header.needs.has(Need::Bounces) {
             true => (usize::from(header.max_depth) + 1).next_multiple_of(4),
             false => 0,
         };

@@ -15,7 +15,7 @@ fn main() -> io::Result<()> {
     if let Ok(needs) = env::var("PROBE_NEEDS") {
         traits.needs = u32::from_str_radix(&needs, 16).unwrap();
         traits.depth = 16;
-        traits.branches = if traits.needs & (3<<12) != 0 { 4 } else { 0 };
+        traits.branches = if traits.needs & (3 << 12) != 0 { 4 } else { 0 };
     }
     let kernel = traits.kernel_path().ok_or_else(|| wrong("no firmware has this blob's kernel"))?;
     let out = PathBuf::from(env::var_os("OUT_DIR").ok_or_else(|| wrong("no OUT_DIR"))?);

@@ -7,7 +7,7 @@ use heapless::Vec;
 
 use super::{BlobError, Header};
 use crate::bvh::{Bvh, Child};
-use crate::colour::{Radiance, Transfer};
+use crate::colour::{Albedo, Radiance, Transfer};
 use crate::kernel::{Bounds, Kernel};
 use crate::profile::{Need, Needs, Profile};
 use crate::record::{Light, Lustre, Reach};
@@ -82,11 +82,12 @@ fn materials_and_lights<P: Profile>(header: &Header, shading: &Shading<'_, P::Ke
     // Where rays may not go on, the background is seen instead of what they would see.
     let goes_on = header.max_depth > 0 || header.background.iter().any(|colour| !colour.is_black());
     for lustre in shading.lustres {
-        let tints = !shading.lights.is_empty() && lustre.shadow != [0; 3];
+        let tints = header.needs.has(Need::Shadows) && lustre.shadow != [0; 3];
+        let goes_on_in = |share: &Albedo| goes_on && *share != [0; 3];
         used = used
             .with(if lustre.flags & Lustre::PHONG == 0 { Need::BlinnPhong } else { Need::Phong }, lustre.shines())
-            .with(Need::Reflection, goes_on && lustre.reflected != [0; 3])
-            .with(Need::Refraction, goes_on && lustre.refracted != [0; 3])
+            .with(Need::Reflection, goes_on_in(&lustre.reflected))
+            .with(Need::Refraction, goes_on_in(&lustre.refracted))
             .with(Need::Schlick, lustre.flags & (Lustre::FRESNEL | Lustre::METAL) != 0)
             .with(Need::TintedShadow, tints);
         valid &= !P::NEEDS.lustres() || lustre_is_valid(lustre);
@@ -107,6 +108,7 @@ fn materials_and_lights<P: Profile>(header: &Header, shading: &Shading<'_, P::Ke
     if !valid {
         return Err(BlobError::Shading);
     }
+    used = used.with(Need::Bounces, used.branches() && header.max_depth > 0);
     match used.first_missing_in(header.needs) {
         Some(need) => Err(BlobError::Undeclared(need)),
         None => Ok(()),
@@ -158,7 +160,7 @@ fn light_is_valid<P: Profile>(light: &Light) -> bool {
 /// would depend on the profile.
 fn of_header(header: &Header) -> Needs {
     Needs::NONE
-        .with(Need::Shadows, header.counts.lights > 0)
+        .with(Need::SeveralLights, header.counts.lights > 1)
         .with(Need::Ambient, !header.ambient.is_black())
         .with(if header.transfer == Transfer::Srgb { Need::Srgb } else { Need::Linear }, true)
         .with(header.format.need(), true)

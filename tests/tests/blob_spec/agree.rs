@@ -65,7 +65,7 @@ fn header(blob: &Blob, model: &Model) -> Checked {
     let needs = [
         any_kind(true),
         any_kind(false),
-        !model.lights.is_empty(),
+        !model.lights.is_empty() && model.render.shadows,
         smooth,
         used.clone().any(|m| model.materials[m as usize].emission != DVec3::ZERO),
         model.render.ambient != DVec3::ZERO,

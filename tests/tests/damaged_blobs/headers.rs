@@ -27,7 +27,7 @@ fn broken_headers<K: Kernel>() {
                 BlobError::Header
             }),
             ("fewer fractional bits than there are", |d| d.header.camera.fraction_bits -= 1, BlobError::Header),
-            ("a need from the future", |d| d.header.needs = Needs::from_bits(1 << 31), BlobError::Header),
+            ("a need from the future", |d| d.header.needs = Needs::from_bits(1 << 29), BlobError::Header),
         ],
     );
     let good = Draft::<K>::read(sample::<K>(false).bytes()).expect("a good blob");
@@ -138,7 +138,7 @@ fn undeclared_needs<K: Kernel>() {
     for need in [
         Need::PointLight,
         Need::DirectionalLight,
-        Need::Shadows,
+        Need::SeveralLights,
         Need::Emission,
         Need::Ambient,
         Need::Srgb,
