@@ -206,6 +206,12 @@ impl Needs {
         if wanted { Self(self.0 | need as u32) } else { self }
     }
 
+    /// The set without a need.
+    #[must_use]
+    pub const fn without(self, need: Need) -> Self {
+        Self(self.0 & !(need as u32))
+    }
+
     /// The first need that `self` has and `other` lacks.
     #[must_use]
     #[inline(never)]

@@ -8,7 +8,7 @@ use core_rt::blob::{Header, PREFIX_SIZE, Prefix};
 use core_rt::exact::{Exact14, Exact20, Exact29};
 use core_rt::hanika::{HanikaC, HanikaCd, HanikaCons};
 use core_rt::kernel::Kernel;
-use core_rt::profile::Need;
+use core_rt::profile::{Need, Prefer};
 use float_rt::{Float32, Float64};
 use zerocopy::FromBytes;
 
@@ -19,6 +19,9 @@ pub const DEFAULT_BLOB: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/default.blo
 
 /// The variable that names the blob that firmware is built for.
 pub const BLOB_VARIABLE: &str = "INTRAY_BLOB";
+
+/// The variable that gives a probe other needs than its blob's, in hexadecimal digits.
+pub const NEEDS_VARIABLE: &str = "INTRAY_NEEDS";
 
 /// The variable that says what is drawn: nothing for the picture, `single` or `tile` for the nearest hits.
 pub const HITS_VARIABLE: &str = "INTRAY_HITS";
@@ -78,6 +81,15 @@ impl Traits {
             (Float64::ID, "float_rt::Float64"),
         ];
         KERNELS.into_iter().find(|&(id, _)| id == self.kernel).map(|(_, path)| path)
+    }
+}
+
+/// What the compiler was told to prefer.
+#[must_use]
+pub fn prefer() -> Prefer {
+    match env::var("OPT_LEVEL").as_deref() {
+        Ok("s" | "z") => Prefer::Size,
+        _ => Prefer::Speed,
     }
 }
 
@@ -161,6 +173,7 @@ fn firmware(
     embedded: Option<(&Path, usize)>,
 ) -> String {
     let Traits { needs, depth, branches, .. } = traits;
+    let prefer = prefer();
     let blob = embedded.map_or_else(String::new, |(path, length)| {
         format!(
             "#[used]\n#[unsafe(link_section = \".blob\")]\nstatic BLOB: [u8; {length}] = *include_bytes!({:?});\n",
@@ -168,14 +181,15 @@ fn firmware(
         )
     });
     format!(
-        "use core_rt::profile::{{Needs, Profile}};\n\
+        "use core_rt::profile::{{Needs, Prefer, Profile}};\n\
          use firmware_rt::board::{{self, Board}};\n\
          use firmware_rt::run::{{Draw, Firmware, Storage}};\n\
          \n\
          #[derive(Clone, Copy, Debug, Default)]\n\
          struct This;\n\
          \n\
-         impl Profile for This {{\n    type Kernel = {kernel};\n    const NEEDS: Needs = Needs::from_bits({needs:#x});\n}}\n\
+         impl Profile for This {{\n    type Kernel = {kernel};\n    const NEEDS: Needs = Needs::from_bits({needs:#x});\n    \
+         const PREFER: Prefer = Prefer::{prefer:?};\n}}\n\
          \n\
          impl Firmware for This {{\n    type Profile = Self;\n    const BOARD: &'static Board = &board::{board};\n    \
          const DRAW: Draw = {draw};\n    const COUNT: bool = {count};\n    const MARKS: bool = {marks};\n}}\n\

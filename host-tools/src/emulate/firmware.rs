@@ -9,6 +9,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+use core_rt::profile::Prefer;
 use firmware_rt::board::Board;
 use firmware_rt::build::{BLOB_VARIABLE, COUNT_VARIABLE, HITS_VARIABLE, MARKS_VARIABLE, Traits};
 use firmware_rt::hits::Way;
@@ -30,6 +31,14 @@ pub struct Wanted<'a> {
     pub hits: Option<Way>,
     /// Whether it counts rays and tests.
     pub count: bool,
+}
+
+/// Cargo's profile for what is preferred.
+pub(super) const fn cargo_profile(prefer: Prefer) -> &'static str {
+    match prefer {
+        Prefer::Speed => "firmware",
+        Prefer::Size => "firmware-small",
+    }
 }
 
 /// How firmware reaches the host.
@@ -80,7 +89,7 @@ impl Wanted<'_> {
     /// # Errors
     /// Where it cannot be built.
     pub fn provide_marked(&self) -> Result<Elf, EmulateError> {
-        self.provide_as(Transport::Semihosting, true)
+        self.provide_as(Transport::Semihosting, true, Prefer::Speed)
     }
 
     /// The firmware that reaches the host in some way, built if need be.
@@ -88,31 +97,39 @@ impl Wanted<'_> {
     /// # Errors
     /// Where it cannot be built.
     pub fn provide_over(&self, transport: Transport) -> Result<Elf, EmulateError> {
-        self.provide_as(transport, false)
+        self.provide_as(transport, false, Prefer::Speed)
     }
 
-    fn provide_as(&self, transport: Transport, marks: bool) -> Result<Elf, EmulateError> {
+    /// The firmware for QEMU that is compiled for speed or for size, built if need be.
+    ///
+    /// # Errors
+    /// Where it cannot be built.
+    pub fn provide_for(&self, prefer: Prefer) -> Result<Elf, EmulateError> {
+        self.provide_as(Transport::Semihosting, false, prefer)
+    }
+
+    fn provide_as(&self, transport: Transport, marks: bool, prefer: Prefer) -> Result<Elf, EmulateError> {
         let damaged = EmulateError::Damaged("the blob has no header");
         let traits = Traits::of(self.blob).ok_or(damaged)?;
         check(self.board, &traits)?;
         let repository = Repository::find()?;
         let folder = repository.target().join("firmware");
         fs::create_dir_all(&folder).map_err(EmulateError::folder)?;
-        let path = folder.join(format!("{}.elf", self.name(&traits, transport, marks)));
+        let path = folder.join(format!("{}.elf", self.name(&traits, transport, marks, prefer)));
         let origin_path = path.with_extension("origin");
         // One at a time: cargo has one place for all profiles of a package.
         let lock = File::create(folder.join("lock")).and_then(|file| file.lock().map(|()| file));
         let _lock = lock.map_err(EmulateError::folder)?;
         let origin = origin(repository.root(), self.board.package).map_err(EmulateError::folder)?;
         if !path.is_file() || !fs::read_to_string(&origin_path).is_ok_and(|made_from| made_from == origin) {
-            self.build(&repository, &path, transport, marks)?;
+            self.build(&repository, &path, transport, marks, prefer)?;
             files::write_atomically(&origin_path, origin.as_bytes())?;
         }
         Elf::read(&path, self.board)
     }
 
     /// Board, kernel, profile and transport.
-    fn name(&self, traits: &Traits, transport: Transport, marks: bool) -> String {
+    fn name(&self, traits: &Traits, transport: Transport, marks: bool, prefer: Prefer) -> String {
         let kernel = engine::by_id(traits.kernel).map_or("unknown", |engine| engine.name());
         let hits = match self.hits {
             None => "",
@@ -125,8 +142,9 @@ impl Wanted<'_> {
             Transport::Semihosting => "",
             Transport::Rtt => "-rtt",
         };
+        let small = if prefer == Prefer::Size { "-small" } else { "" };
         let Traits { needs, depth, branches, .. } = traits;
-        format!("{}-{kernel}-{needs:x}-{depth}-{branches}{hits}{count}{marks}{transport}", self.board.name)
+        format!("{}-{kernel}-{needs:x}-{depth}-{branches}{hits}{count}{marks}{transport}{small}", self.board.name)
     }
 
     fn build(
@@ -135,6 +153,7 @@ impl Wanted<'_> {
         path: &Path,
         transport: Transport,
         marks: bool,
+        prefer: Prefer,
     ) -> Result<(), EmulateError> {
         let Board { target, package, feature, .. } = *self.board;
         // A name that stays the same from build to build, so that cargo knows what it has.
@@ -152,14 +171,23 @@ impl Wanted<'_> {
             (COUNT_VARIABLE, set(self.count).into()),
             (MARKS_VARIABLE, set(marks).into()),
         ];
-        let mut arguments =
-            vec!["build", "--package", package, "--bin", package, "--target", target, "--profile", "firmware"];
+        let mut arguments = vec![
+            "build",
+            "--package",
+            package,
+            "--bin",
+            package,
+            "--target",
+            target,
+            "--profile",
+            cargo_profile(prefer),
+        ];
         let rtt = (transport == Transport::Rtt).then_some("rtt");
         arguments.extend(feature.into_iter().chain(rtt).flat_map(|feature| ["--features", feature]));
         repository
             .cargo(&arguments, &variables)
             .map_err(|output| EmulateError::Build { package: package.into(), output })?;
-        let built = repository.target().join(target).join("firmware").join(package);
+        let built = repository.target().join(target).join(cargo_profile(prefer)).join(package);
         files::write_atomically(path, &files::read(&built)?)?;
         // Only the build needed it.
         fs::remove_file(blob).map_err(EmulateError::folder)

@@ -12,8 +12,10 @@ pub mod frames;
 pub mod log;
 pub mod machine;
 pub mod parts;
+pub mod probe;
 pub mod process;
 mod repository;
+pub mod routines;
 
 pub use error::EmulateError;
 
