@@ -185,7 +185,7 @@ pub fn render_tile<'w, P: Profile>(
             .clone()
             .flat_map(|[x, y]| Places::of(samples).map(move |place| scene.primary(&scene.camera.through(place), x, y)));
         let (mut sum, mut taken) = (ColourOf::<P>::default(), 0);
-        let mut shown = pixels.chunks_exact_mut(format.bytes()).zip(places);
+        let (mut unwritten, mut shown) = (&mut *pixels, places);
         let mut left = count * usize::from(samples);
         while left > 0 {
             let room = hits.len().min(left);
@@ -197,7 +197,7 @@ pub fn render_tile<'w, P: Profile>(
                 sum = sum.plus(seen(scene, ray.as_ref(), hit, stack, branches, stats).clamped());
                 taken += 1;
                 if taken == samples {
-                    if let Some((pixel, place)) = shown.next() {
+                    if let Some((pixel, place)) = unwritten.split_off_mut(..format.bytes()).zip(shown.next()) {
                         format.put(sum.mean(samples), transfer, place, pixel);
                     }
                     (sum, taken) = (ColourOf::<P>::default(), 0);

@@ -69,12 +69,11 @@ pub(crate) fn shade<'a, P: Profile>(
             diffuse = Colour::constant(&scene.frame.ambient);
         }
         // One light takes no loop.
-        let (first, others) = match scene.shading.lights {
-            [first, others @ ..] => (Some(first), others),
-            [] => (None, &[][..]),
+        let lights = match scene.shading.lights {
+            [first, ..] if !P::NEEDS.has(Need::SeveralLights) => core::slice::from_ref(first),
+            lights => lights,
         };
-        let others = if P::NEEDS.has(Need::SeveralLights) { others } else { &[] };
-        for (number, light) in (0..).zip(first.into_iter().chain(others)) {
+        for (number, light) in (0..).zip(lights) {
             let Some((light, towards, cosine)) = arriving(scene, &surface, smooth, light, hit, stack, stats) else {
                 continue;
             };

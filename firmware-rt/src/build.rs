@@ -23,7 +23,8 @@ pub const BLOB_VARIABLE: &str = "INTRAY_BLOB";
 /// The variable that gives a probe other needs than its blob's, in hexadecimal digits.
 pub const NEEDS_VARIABLE: &str = "INTRAY_NEEDS";
 
-/// The variable that says what is drawn: nothing for the picture, `single` or `tile` for the nearest hits.
+/// The variable that says what is drawn: nothing for the picture, `single` or `tile` for the nearest hits,
+/// `by-hand` for the picture by a loop for the smallest profile alone.
 pub const HITS_VARIABLE: &str = "INTRAY_HITS";
 
 /// The variable that, set to 1, makes firmware count its work.
@@ -114,6 +115,7 @@ pub fn script(board: &Board, constant: &str) -> io::Result<()> {
     let draw = match env::var(HITS_VARIABLE).as_deref() {
         Ok("single") => "Draw::Hits(firmware_rt::hits::Way::Single)",
         Ok("tile") => "Draw::Hits(firmware_rt::hits::Way::Tile)",
+        Ok("by-hand") => "Draw::ByHand",
         _ => "Draw::Picture",
     };
     let watched = [COUNT_VARIABLE, MARKS_VARIABLE].map(|variable| env::var(variable).as_deref() == Ok("1"));

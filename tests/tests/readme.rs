@@ -9,12 +9,14 @@ use std::process::Command;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
+use core_rt::profile::{Need, Prefer};
 use core_rt::stats::Counts;
-use firmware_rt::board::{BOARDS, Board};
+use firmware_rt::board::{BOARDS, Board, HIFIVE1, MICROBIT};
 use host_tools::compare::compare;
 use host_tools::emulate::counter::Counter;
-use host_tools::emulate::firmware::Wanted;
+use host_tools::emulate::firmware::{self, Wanted};
 use host_tools::emulate::machine::Machine;
+use host_tools::emulate::probe::{DRAWING, Probe, SMALLEST, WHITTED, WHOLE, alone};
 use host_tools::emulate::{self, Run};
 use host_tools::engine::{self, ENGINES};
 use host_tools::import::{self, Embedded};
@@ -118,6 +120,50 @@ fn the_readme_shows_what_the_program_makes() {
 
     check_part("figures", &table, |stored, found| stored == found);
     check_picture("docs/demo.png", &shown.expect("there are kernels"));
+}
+
+/// A row of the table of needs: a size for each board.
+fn sizes_row(name: &str, size: impl Fn(&'static Board) -> String) -> String {
+    format!("| {name} | {} |\n", SIZED.map(size).join(" | "))
+}
+
+/// The boards of the table of needs.
+const SIZED: [&Board; 2] = [&MICROBIT, &HIFIVE1];
+
+#[test]
+fn the_readme_says_what_needs_take() {
+    if let Some(error) = SIZED.into_iter().find_map(|board| firmware::check_board(board).err()) {
+        println!("skipped: {error}");
+        return;
+    }
+    let is_other = !generated(&readme(), "needs").expect("the README has the marks").contains(&compiler());
+    if is_other && !is_blessing() {
+        println!("skipped the sizes of needs: they are those of another compiler");
+        return;
+    }
+    let size = |board, program, needs| {
+        let probe = Probe { board, program, prefer: Prefer::Size, blob: None, needs: Some(needs) };
+        probe.size().expect("it can be built")
+    };
+    let mut table = format!(
+        "By {}, `exact14`, for size (`firmware-small`).\n\n| bytes of code and constants | {} |\n| --- | --- | --- |\n",
+        compiler(),
+        SIZED.map(|board| board.name).join(" | "),
+    );
+    for (name, needs) in [("the smallest profile", SMALLEST), ("all that light may need", WHITTED)] {
+        table += &sizes_row(name, |board| size(board, DRAWING, needs).to_string());
+        table += &sizes_row(&format!("{name}, with the blob's check"), |board| size(board, WHOLE, needs).to_string());
+    }
+    for need in Need::ALL {
+        if let Some([without, with]) = alone(need) {
+            let added = |board| {
+                let added = size(board, WHOLE, with).cast_signed() - size(board, WHOLE, without).cast_signed();
+                format!("{added:+}")
+            };
+            table += &sizes_row(&need.to_string(), added);
+        }
+    }
+    check_part("needs", &table, |stored, found| stored == found);
 }
 
 /// The report of the gallery, as it is stored.

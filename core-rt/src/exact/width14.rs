@@ -150,14 +150,14 @@ impl Width for Width14 {
         let r = reciprocal(scaled(denominator, bits, 16) as u32);
         // At most 65/64 * 2^14, times a mantissa below 2^16; mantissa / 2^29 is 1 / the 14-bit denominator.
         let rest_q26 = (scaled(remainder, bits, 14) as i32 * r.mantissa as i32) >> 19;
-        let offset = [0, 1, 2].map(|axis| {
+        let offset = |axis: usize| {
             let coarse = direction[axis] * t_q16; // at most SPAN grid units
             let fine = round_shift(direction[axis] * rest_q26, 26 - OFFSET_BITS); // 2^13 * 2^11
             (s[axis] << OFFSET_BITS).wrapping_add(coarse).wrapping_add(fine)
-        });
-        let point =
-            [0, 1, 2].map(|axis| (centre[axis] << POINT_BITS) + round_shift(offset[axis], OFFSET_BITS - POINT_BITS));
-        (point, offset)
+        };
+        let offset = [offset(0), offset(1), offset(2)];
+        let placed = |axis: usize| (centre[axis] << POINT_BITS) + round_shift(offset[axis], OFFSET_BITS - POINT_BITS);
+        ([placed(0), placed(1), placed(2)], offset)
     }
 
     #[inline]

@@ -37,6 +37,11 @@ impl SceneArguments {
         self.load_for(ENGINES[0])
     }
 
+    /// The same, and the model that it was made from, if it was.
+    pub(super) fn load_with_model(&self) -> Result<(Scene, Option<Model>), Failure> {
+        self.load_by(self.engine_or(ENGINES[0]))
+    }
+
     /// The same, where a chip is to render it: with another kernel unless one is asked for.
     pub(super) fn load_for_chip(&self) -> Result<Scene, Failure> {
         self.load_for(engine::by_id(Exact14::ID).unwrap_or(ENGINES[0]))
@@ -44,7 +49,7 @@ impl SceneArguments {
 
     /// The same, where the mesh is to say which kernel will do unless one is asked for.
     pub(super) fn load_for_mesh(&self) -> Result<Scene, Failure> {
-        self.load_by(self.engine())
+        self.load_by(self.engine()).map(|(scene, _)| scene)
     }
 
     /// The same, with the cheapest kernel and the coarsest grid that stay inside a budget.
@@ -78,20 +83,25 @@ impl SceneArguments {
 
     /// Reads the scene and prepares it, for `default` where neither it nor the user names a kernel.
     fn load_for(&self, default: &'static dyn Engine) -> Result<Scene, Failure> {
+        self.load_by(self.engine_or(default)).map(|(scene, _)| scene)
+    }
+
+    /// The kernel that the user names, or `default`; none where the scene is to say.
+    fn engine_or(&self, default: &'static dyn Engine) -> Option<&'static dyn Engine> {
         let is_auto = self.kernel.as_deref() == Some(AUTO);
-        self.load_by(self.engine().or((!is_auto).then_some(default)))
+        self.engine().or((!is_auto).then_some(default))
     }
 
     /// Reads the scene and prepares it, for the cheapest kernel that it stands on well where none is given.
-    fn load_by(&self, engine: Option<&'static dyn Engine>) -> Result<Scene, Failure> {
+    fn load_by(&self, engine: Option<&'static dyn Engine>) -> Result<(Scene, Option<Model>), Failure> {
         if !self.is_model() {
-            return self.load_blob();
+            return Ok((self.load_blob()?, None));
         }
         let model = self.model()?;
         let choice = engine.is_none().then(|| auto(&model));
         let engine = choice.as_ref().map(|choice| choice.engine).or(engine).unwrap_or(ENGINES[0]);
         let scene = self.prepare(&model, engine, &self.options())?;
-        Ok(Scene { choice: choice.map(|choice| choice.to_string()), ..scene })
+        Ok((Scene { choice: choice.map(|choice| choice.to_string()), ..scene }, Some(model)))
     }
 
     /// Whether the scene is not a blob, by its name.

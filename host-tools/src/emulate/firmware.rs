@@ -51,6 +51,15 @@ pub enum Transport {
     Rtt,
 }
 
+/// How firmware is built.
+#[derive(Clone, Copy, Debug, Default)]
+struct How {
+    transport: Transport,
+    marks: bool,
+    prefer: Prefer,
+    by_hand: bool,
+}
+
 /// Checks that firmware can be built here: that the sources and the compiler's library are there.
 ///
 /// # Errors
@@ -89,7 +98,7 @@ impl Wanted<'_> {
     /// # Errors
     /// Where it cannot be built.
     pub fn provide_marked(&self) -> Result<Elf, EmulateError> {
-        self.provide_as(Transport::Semihosting, true, Prefer::Speed)
+        self.provide_as(How { marks: true, ..How::default() })
     }
 
     /// The firmware that reaches the host in some way, built if need be.
@@ -97,7 +106,7 @@ impl Wanted<'_> {
     /// # Errors
     /// Where it cannot be built.
     pub fn provide_over(&self, transport: Transport) -> Result<Elf, EmulateError> {
-        self.provide_as(transport, false, Prefer::Speed)
+        self.provide_as(How { transport, ..How::default() })
     }
 
     /// The firmware for QEMU that is compiled for speed or for size, built if need be.
@@ -105,31 +114,39 @@ impl Wanted<'_> {
     /// # Errors
     /// Where it cannot be built.
     pub fn provide_for(&self, prefer: Prefer) -> Result<Elf, EmulateError> {
-        self.provide_as(Transport::Semihosting, false, prefer)
+        self.provide_as(How { prefer, ..How::default() })
     }
 
-    fn provide_as(&self, transport: Transport, marks: bool, prefer: Prefer) -> Result<Elf, EmulateError> {
+    /// The firmware for QEMU that draws the picture of the smallest profile by a loop for it alone, built if need be.
+    ///
+    /// # Errors
+    /// Where it cannot be built.
+    pub fn provide_by_hand(&self) -> Result<Elf, EmulateError> {
+        self.provide_as(How { by_hand: true, ..How::default() })
+    }
+
+    fn provide_as(&self, how: How) -> Result<Elf, EmulateError> {
         let damaged = EmulateError::Damaged("the blob has no header");
         let traits = Traits::of(self.blob).ok_or(damaged)?;
         check(self.board, &traits)?;
         let repository = Repository::find()?;
         let folder = repository.target().join("firmware");
         fs::create_dir_all(&folder).map_err(EmulateError::folder)?;
-        let path = folder.join(format!("{}.elf", self.name(&traits, transport, marks, prefer)));
+        let path = folder.join(format!("{}.elf", self.name(&traits, how)));
         let origin_path = path.with_extension("origin");
         // One at a time: cargo has one place for all profiles of a package.
         let lock = File::create(folder.join("lock")).and_then(|file| file.lock().map(|()| file));
         let _lock = lock.map_err(EmulateError::folder)?;
         let origin = origin(repository.root(), self.board.package).map_err(EmulateError::folder)?;
         if !path.is_file() || !fs::read_to_string(&origin_path).is_ok_and(|made_from| made_from == origin) {
-            self.build(&repository, &path, transport, marks, prefer)?;
+            self.build(&repository, &path, how)?;
             files::write_atomically(&origin_path, origin.as_bytes())?;
         }
         Elf::read(&path, self.board)
     }
 
     /// Board, kernel, profile and transport.
-    fn name(&self, traits: &Traits, transport: Transport, marks: bool, prefer: Prefer) -> String {
+    fn name(&self, traits: &Traits, how: How) -> String {
         let kernel = engine::by_id(traits.kernel).map_or("unknown", |engine| engine.name());
         let hits = match self.hits {
             None => "",
@@ -137,29 +154,26 @@ impl Wanted<'_> {
             Some(Way::Tile) => "-tile",
         };
         let count = if self.count { "-count" } else { "" };
-        let marks = if marks { "-marks" } else { "" };
-        let transport = match transport {
+        let marks = if how.marks { "-marks" } else { "" };
+        let transport = match how.transport {
             Transport::Semihosting => "",
             Transport::Rtt => "-rtt",
         };
-        let small = if prefer == Prefer::Size { "-small" } else { "" };
+        let small = if how.prefer == Prefer::Size { "-small" } else { "" };
+        let by_hand = if how.by_hand { "-by-hand" } else { "" };
         let Traits { needs, depth, branches, .. } = traits;
-        format!("{}-{kernel}-{needs:x}-{depth}-{branches}{hits}{count}{marks}{transport}{small}", self.board.name)
+        let board = self.board.name;
+        format!("{board}-{kernel}-{needs:x}-{depth}-{branches}{hits}{count}{marks}{transport}{small}{by_hand}")
     }
 
-    fn build(
-        &self,
-        repository: &Repository,
-        path: &Path,
-        transport: Transport,
-        marks: bool,
-        prefer: Prefer,
-    ) -> Result<(), EmulateError> {
+    fn build(&self, repository: &Repository, path: &Path, how: How) -> Result<(), EmulateError> {
+        let How { transport, marks, prefer, by_hand } = how;
         let Board { target, package, feature, .. } = *self.board;
         // A name that stays the same from build to build, so that cargo knows what it has.
         let blob = path.with_extension("blob");
         files::write_atomically(&blob, self.blob)?;
         let hits = match self.hits {
+            None if by_hand => "by-hand",
             None => "",
             Some(Way::Single) => "single",
             Some(Way::Tile) => "tile",

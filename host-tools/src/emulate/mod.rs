@@ -4,6 +4,7 @@
 //! the number of instructions from a [plugin](counter) that watches from outside.
 
 pub mod breakdown;
+pub mod costs;
 pub mod counter;
 pub mod elf;
 mod error;

@@ -22,8 +22,7 @@ pub const DRAWING: &str = "drawing";
 pub const EMPTY: &str = "empty";
 
 /// One point light on matt, flat triangles, without shadows, to linear RGB888: no scene that is lit needs less.
-pub const SMALLEST: Needs =
-    Needs::NONE.with(Need::PointLight, true).with(Need::Linear, true).with(Need::Rgb888, true);
+pub const SMALLEST: Needs = Needs::NONE.with(Need::PointLight, true).with(Need::Linear, true).with(Need::Rgb888, true);
 
 /// All that the light of a scene may need, to sRGB and RGB888: what is left out are other cameras, outputs and wider indices.
 pub const WHITTED: Needs = Needs::ALL

@@ -14,7 +14,7 @@ use object::{Endianness, Object, ObjectSection, SectionKind};
 /// What is in a file's path, the function (any of the file, if none is named), and the needs each of which asks for it.
 ///
 /// A need that is only a branch has no routine: emission, ambient light, linear pixels, widths, several lights.
-const ROUTINES: [(&str, Option<&str>, &[Need]); 42] = {
+const ROUTINES: [(&str, Option<&str>, &[Need]); 41] = {
     use Need::*;
     [
         ("core-rt/src/bvh.rs", Some("any"), &[Shadows]),
@@ -30,7 +30,6 @@ const ROUTINES: [(&str, Option<&str>, &[Need]); 42] = {
         ("core-rt/src/camera.rs", Some("parallel"), &[Orthographic]),
         ("core-rt/src/camera.rs", Some("along"), &[Orthographic]),
         ("core-rt/src/colour.rs", Some("mean"), &[Supersampling]),
-        ("core-rt/src/colour.rs", Some("clamped"), &[Supersampling]),
         ("core-rt/src/colour.rs", Some("doubled"), &[BlinnPhong, Phong]),
         ("core-rt/src/colour.rs", Some("tinted"), &[TintedShadow]),
         ("core-rt/src/colour.rs", Some("times"), &[Falloff]),
@@ -124,8 +123,8 @@ pub fn routines(bytes: &[u8]) -> Result<Vec<Routine>, String> {
                 let name = function.raw_name().map_err(|error| error.to_string())?;
                 let path = format!("{:#}", rustc_demangle::demangle(&name));
                 let name = last_name(&path);
-                // The outermost: what a routine has inlined is there for it.
-                if let Some(needs) = asked_by(file, name) {
+                // The innermost: what a routine has inlined may be there for less than all of it.
+                if let (None, Some(needs)) = (&found, asked_by(file, name)) {
                     found = Some((needs, name.to_owned()));
                 }
             }
