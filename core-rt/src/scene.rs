@@ -145,7 +145,11 @@ impl<P: Profile> Scene<'_, P> {
     /// The rays that may wait while a pixel is drawn.
     #[must_use]
     pub fn branches(&self) -> usize {
-        if self.frame.needs.has(Need::Bounces) { usize::from(self.frame.max_depth) + 1 } else { 0 }
+        if P::NEEDS.has(Need::Bounces) && self.frame.needs.has(Need::Bounces) {
+            usize::from(self.frame.max_depth) + 1
+        } else {
+            0
+        }
     }
 
     /// Whether surfaces are in each other's way of light.

@@ -38,8 +38,31 @@ pub(crate) struct Shaded<'a, P: Profile> {
     pub(crate) colour: ColourOf<P>,
 }
 
+/// The light alone that the surface sends which a ray hits, where no ray goes on from it; `None` for a miss.
+pub(crate) fn sent<P: Profile>(
+    scene: &Scene<'_, P>,
+    ray: &RayOf<P>,
+    hit: u32,
+    stack: &mut Stack<P::Kernel>,
+    stats: &mut impl Stats,
+) -> Option<ColourOf<P>> {
+    shaded(scene, ray, hit, stack, stats).map(|shaded| shaded.colour)
+}
+
 /// The surface that a ray hits, shaded; `None` for a miss.
 pub(crate) fn shade<'a, P: Profile>(
+    scene: &Scene<'a, P>,
+    ray: &RayOf<P>,
+    hit: u32,
+    stack: &mut Stack<P::Kernel>,
+    stats: &mut impl Stats,
+) -> Option<Shaded<'a, P>> {
+    shaded(scene, ray, hit, stack, stats)
+}
+
+/// See [`shade`]. A part of the caller, so that what that does not ask for is not made.
+#[inline(always)]
+fn shaded<'a, P: Profile>(
     scene: &Scene<'a, P>,
     ray: &RayOf<P>,
     hit: u32,
@@ -68,14 +91,9 @@ pub(crate) fn shade<'a, P: Profile>(
         if P::NEEDS.has(Need::Ambient) {
             diffuse = Colour::constant(&scene.frame.ambient);
         }
-        // One light takes no loop.
-        let lights = match scene.shading.lights {
-            [first, ..] if !P::NEEDS.has(Need::SeveralLights) => core::slice::from_ref(first),
-            lights => lights,
-        };
-        for (number, light) in (0..).zip(lights) {
+        let mut add = |number, light| {
             let Some((light, towards, cosine)) = arriving(scene, &surface, smooth, light, hit, stack, stats) else {
-                continue;
+                return;
             };
             stats.light(number);
             diffuse = diffuse.plus(Colour::lit(&light, cosine));
@@ -83,6 +101,12 @@ pub(crate) fn shade<'a, P: Profile>(
                 let lobe = lobe::<P>(lustre, along, normal, towards);
                 shining = shining.plus(Colour::lit(&light, lobe));
             }
+        };
+        // One light takes no loop.
+        if P::NEEDS.has(Need::SeveralLights) {
+            (0..).zip(scene.shading.lights).for_each(|(number, light)| add(number, light));
+        } else if let Some(light) = scene.shading.lights.first() {
+            add(0, light);
         }
         colour = diffuse.reflected(&albedo);
         if let Some((lustre, _)) = shine {
@@ -148,11 +172,15 @@ impl<'a, P: Profile> Scene<'a, P> {
     /// The surface and the material of a hit; `None` for a miss.
     #[inline(always)]
     fn surface(&self, ray: &RayOf<P>, hit: u32) -> Option<(Surface<SpaceOf<P>>, &'a Material)> {
-        let material = self.material(hit)?;
-        let mut surface = match self.bvh.sphere(hit) {
-            Some(sphere) => P::Kernel::resolve_sphere(ray, sphere),
-            None => P::Kernel::resolve(ray, self.bvh.triangles.get(hit as usize)?),
+        // No hit is past the end of both.
+        let (number, mut surface) = match self.bvh.sphere(hit) {
+            Some(sphere) => (P::Kernel::sphere_material(sphere), P::Kernel::resolve_sphere(ray, sphere)),
+            None => {
+                let triangle = self.bvh.triangles.get(hit as usize)?;
+                (P::Kernel::material(triangle), P::Kernel::resolve(ray, triangle))
+            }
         };
+        let material = self.shading.materials.get(number as usize)?;
         // What nothing reads need not be worked out.
         if !P::NEEDS.weights() {
             (surface.u, surface.v) = Default::default();

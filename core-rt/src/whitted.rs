@@ -13,7 +13,7 @@ use crate::kernel::{Kernel, Surface};
 use crate::profile::{Need, Profile};
 use crate::record::Lustre;
 use crate::scene::Scene;
-use crate::shade::{ColourOf, RayOf, Shaded, SpaceOf, UnitOf, shade};
+use crate::shade::{ColourOf, RayOf, Shaded, SpaceOf, UnitOf, sent, shade};
 use crate::space::Space;
 use crate::stats::{RayKind, Stats};
 
@@ -41,10 +41,7 @@ pub(crate) fn radiance<P: Profile>(
     // That of no hit is none: it is past the end.
     stats.surface(|| scene.bvh.ids.get(hit));
     if !P::NEEDS.branches() {
-        return match shade(scene, ray, hit, stack, stats) {
-            Some(shaded) => shaded.colour,
-            None => background(scene, ray),
-        };
+        return sent(scene, ray, hit, stack, stats).unwrap_or_else(|| background(scene, ray));
     }
     let mut total = ColourOf::<P>::default();
     let (mut ray, mut share, mut depth, mut hit) = (ray, WHITE, 0, hit);

@@ -15,6 +15,10 @@ type ColourOf<P> = <SpaceOf<P> as Space>::Colour;
 
 /// Renders a tile; the bytes of its pixels.
 pub(crate) fn draw<P: Profile>(scene: &Scene<'_, P>, tile: Tile, workspace: &mut Workspace<'_, P::Kernel>) -> usize {
+    // What a tile's storage is for every profile.
+    if workspace.stack.capacity() < usize::from(scene.frame.depth) {
+        return 0;
+    }
     let hits = workspace.hits.get_mut(..tile.pixels()).unwrap_or_default();
     let ray = |[x, y]: [u16; 2]| P::Kernel::primary(scene.settings, &scene.camera, x, y);
     scene.bvh.closest_tile(tile.places().map(ray), hits, workspace.stack, &mut NoStats);

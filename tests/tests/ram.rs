@@ -7,15 +7,20 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use core_rt::profile::{Need, Needs, Prefer};
+use firmware_rt::board::MICROBIT;
 use firmware_rt::build::Traits;
 use glam::{DVec2, DVec3};
 use host_tools::emulate::Run;
-use host_tools::emulate::firmware::Wanted;
-use host_tools::emulate::probe::WHITTED;
+use host_tools::emulate::firmware::{self, Wanted};
+use host_tools::emulate::probe::{Probe, WHITTED, WHOLE};
 use host_tools::model::{Background, Checker, Falloff, Light, LightKind, Lobe, MaterialKind, Model, Specular, Texture};
 use host_tools::{engine, prepare::Options};
 use tests::boards::boards;
 use tests::scenes;
+use tests::stack::bound;
+
+/// Of a tile.
+const PIXELS: usize = 16 * 16;
 
 const LIMIT: Duration = Duration::from_secs(300);
 
@@ -43,6 +48,23 @@ fn everything() -> Model {
         (material.weights, material.tinted_shadow) = (None, true);
     }
     model
+}
+
+/// What no run can go beyond, by the instructions of a program of rendering code alone: its stack, on which are those of the
+/// traversal and of the rays that wait, and a tile's hits and pixels.
+#[test]
+fn no_run_can_take_more() {
+    if firmware::check_board(&MICROBIT).is_err() {
+        println!("skipped: the compiler has no library for {}", MICROBIT.target);
+        return;
+    }
+    for prefer in [Prefer::Speed, Prefer::Size] {
+        let probe = Probe { board: &MICROBIT, program: WHOLE, prefer, blob: None, needs: Some(WHITTED) };
+        let stack = bound(probe.provide().expect("it can be built").bytes(), "_start").expect("it has a bound");
+        let all = stack + (PIXELS * (4 + Needs::pixel_bytes(WHITTED))) as u64;
+        println!("for {prefer:?}: at most {all} bytes of RAM, {stack} of them stack");
+        assert!((1 << 10..=MOST).contains(&all), "{all}");
+    }
 }
 
 #[test]
