@@ -150,7 +150,7 @@ fn smooth<P: Profile>(scene: &Scene<'_, P>, hit: u32, surface: &Surface<SpaceOf<
         return None;
     }
     // There is none for a sphere.
-    let triangle = scene.bvh.triangles.get(hit as usize)?;
+    let vertices = scene.bvh.triangles.vertices(hit)?;
     let mut normals = scene.shading.normals(hit)?;
     let mut normal = SpaceOf::<P>::interpolate(normals, surface.u, surface.v)?;
     if !SpaceOf::<P>::aligned(normal, surface.normal) {
@@ -160,7 +160,7 @@ fn smooth<P: Profile>(scene: &Scene<'_, P>, hit: u32, surface: &Surface<SpaceOf<
     let mut lifted = surface.point;
     // A triangle with a normal far off its own is creased, and no part of a smooth surface.
     if scene.shadows() && normals.iter().all(|&normal| SpaceOf::<P>::near(normal, surface.normal)) {
-        let corners = P::Kernel::vertices(triangle).map(SpaceOf::<P>::point);
+        let corners = vertices.map(SpaceOf::<P>::point);
         let (low, high) = (P::Kernel::MARGIN, (1 << P::Kernel::GRID_BITS) - 1 - P::Kernel::MARGIN);
         let range = [low, high].map(|c| SpaceOf::<P>::point([c; 3]));
         lifted = SpaceOf::<P>::lift(lifted, corners, normals, [surface.u, surface.v], range);
@@ -176,8 +176,8 @@ impl<'a, P: Profile> Scene<'a, P> {
         let (number, mut surface) = match self.bvh.sphere(hit) {
             Some(sphere) => (P::Kernel::sphere_material(sphere), P::Kernel::resolve_sphere(ray, sphere)),
             None => {
-                let triangle = self.bvh.triangles.get(hit as usize)?;
-                (P::Kernel::material(triangle), P::Kernel::resolve(ray, triangle))
+                let triangle = self.bvh.triangles.get(hit)?;
+                (self.bvh.triangles.material(hit)?, P::Kernel::resolve(ray, &triangle))
             }
         };
         let material = self.shading.materials.get(number as usize)?;
@@ -196,7 +196,7 @@ impl<'a, P: Profile> Scene<'a, P> {
         }
         let number = match self.bvh.sphere(hit) {
             Some(sphere) => P::Kernel::sphere_material(sphere),
-            None => P::Kernel::material(self.bvh.triangles.get(hit as usize)?),
+            None => self.bvh.triangles.material(hit)?,
         };
         self.shading.materials.get(number as usize)
     }

@@ -70,5 +70,7 @@ fn name(need: Need) -> defmt::Str {
         Need::Schlick => defmt::intern!("reflections after Schlick"),
         Need::SeveralLights => defmt::intern!("several lights"),
         Need::Bounces => defmt::intern!("rays that go on"),
+        Need::WholeTriangles => defmt::intern!("triangles with records"),
+        Need::SharedVertices => defmt::intern!("shared vertices"),
     }
 }

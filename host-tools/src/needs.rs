@@ -83,6 +83,7 @@ fn of<K: Kernel>(scene: &Scene<'_, Full<K>>, header: &Header, need: Need) -> Ask
             let indices = paint.uv_indices.size() + paint.colour_indices.size();
             things((paint.uvs.len() + paint.colours.len()) as u64, "place in a texture or colour", indices / 2)
         }
+        Need::WholeTriangles | Need::SharedVertices => things(triangles, "triangle", scene.bvh.triangles.bytes()),
         Need::Ambient
         | Need::Srgb
         | Need::Linear
@@ -99,7 +100,7 @@ fn of<K: Kernel>(scene: &Scene<'_, Full<K>>, header: &Header, need: Need) -> Ask
 /// The number in the file of a triangle, or a sphere after them, of each material of the blob.
 #[must_use]
 pub fn bearers<K: Kernel>(scene: &Scene<'_, Full<K>>) -> BTreeMap<u32, u32> {
-    let triangles = scene.bvh.triangles.iter().map(K::material);
+    let triangles = (0..scene.bvh.triangles.len()).map(|index| scene.bvh.triangles.material(index).unwrap_or_default());
     let spheres = scene.bvh.spheres.iter().map(K::sphere_material);
     (0..).zip(triangles.chain(spheres)).map(|(index, material)| (material, scene.bvh.ids.get(index))).collect()
 }

@@ -14,7 +14,7 @@ fn main() -> io::Result<()> {
     let wrong = |what: &str| io::Error::other(format!("{}: {what}", path.display()));
     let mut traits = Traits::of(&fs::read(&path)?).ok_or_else(|| wrong("not a blob"))?;
     if let Some(needs) = env::var(NEEDS_VARIABLE).ok().filter(|needs| !needs.is_empty()) {
-        traits.needs = u32::from_str_radix(&needs, 16).map_err(io::Error::other)?;
+        traits.needs = u64::from_str_radix(&needs, 16).map_err(io::Error::other)?;
     }
     let kernel = traits.kernel_path().ok_or_else(|| wrong("no firmware has this blob's kernel"))?;
     let out = PathBuf::from(env::var_os("OUT_DIR").ok_or_else(|| wrong("no OUT_DIR"))?);

@@ -107,7 +107,7 @@ impl Fields<'_> {
     #[inline(always)]
     fn header(&mut self) -> Header {
         Header {
-            needs: Needs::from_bits(self.u32()),
+            needs: Needs::from_bits(self.unsigned(64)),
             size: [self.u16(), self.u16()],
             camera: CameraHeader {
                 eye: self.triple_i32(),
@@ -128,6 +128,7 @@ impl Fields<'_> {
             counts: Counts {
                 nodes: self.u32(),
                 triangles: self.u32(),
+                vertices: self.u32(),
                 spheres: self.u32(),
                 smooth: self.u32(),
                 normals: self.u32(),

@@ -89,24 +89,33 @@ pub(super) fn pack<W: Width>(vertices: &Vertices, material: u32) -> Option<Trian
     if !vertices.as_flattened().iter().all(|c| grid.contains(c)) {
         return None;
     }
-    let [v0, v1, v2] = vertices.map(|v| v.map(W::Word::from_i32));
+    assemble::<W>(vertices.map(|vertex| vertex.map(W::Word::from_i32)), material)
+}
+
+/// The record of a triangle on the grid; `None` where it has no area, or its material is too high.
+#[inline(always)]
+pub(super) fn assemble<W: Width>(
+    [v0, v1, v2]: [Triple<W::Word>; 3],
+    material: u32,
+) -> Option<TriangleRecord<W::Short>> {
     let (e1, e2) = (sub(v1, v0), sub(v2, v0));
-    let normal = cross(e1, e2); // at most 2^(2 b), a word: twice the area of a projection onto a square of side 2^b
+    // Twice the area of a projection onto a square of side 2^b: below 2^(2 GRID_BITS), which the word has.
+    let normal = cross(e1, e2);
     if normal == [W::Word::ZERO; 3] {
         return None;
     }
-    let edges = [e1, e2, sub(v2, v1)];
-    let longest = edges.as_flattened().iter().fold(W::Word::ZERO, |longest, c| longest.max(c.magnitude()));
-    let shift = longest.magnitude_bits();
-    let n = normal.map(|c| c >> (2 * shift).saturating_sub(W::NORMAL_BITS));
-    let mut record = [W::Short::default(); 13];
-    for (field, value) in record.iter_mut().zip([v0, e1, e2, n].as_flattened()) {
-        // Corners and edges are on the grid, and n has NORMAL_BITS: 32 bits hold them.
-        *field = W::Short::try_from(value.low_i32().into()).ok()?;
-    }
-    let [.., meta] = &mut record;
-    *meta = W::join_meta(shift, material)?;
-    Some(TriangleRecord(record))
+    // One count over the magnitudes: the highest set bit is what matters.
+    let any = |e: Triple<W::Word>| e[0].magnitude() | e[1].magnitude() | e[2].magnitude();
+    let shift = (any(e1) | any(e2) | any(sub(v2, v1))).magnitude_bits();
+    let k = (2 * shift).saturating_sub(W::NORMAL_BITS);
+    let [v0, e1, e2, n] = [v0, e1, e2, normal.map(|c| c >> k)].map(|row| row.map(W::short));
+    let meta = W::join_meta(shift, material)?;
+    Some(TriangleRecord([v0[0], v0[1], v0[2], e1[0], e1[1], e1[2], e2[0], e2[1], e2[2], n[0], n[1], n[2], meta]))
+}
+
+/// The record of a vertex on the grid.
+pub(super) fn vertex<W: Width>(place: Triple<i32>) -> Triple<W::Short> {
+    place.map(|c| W::short(W::Word::from_i32(c)))
 }
 
 /// The corners.

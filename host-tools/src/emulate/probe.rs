@@ -22,7 +22,11 @@ pub const DRAWING: &str = "drawing";
 pub const EMPTY: &str = "empty";
 
 /// One point light on matt, flat triangles, without shadows, to linear RGB888: no scene that is lit needs less.
-pub const SMALLEST: Needs = Needs::NONE.with(Need::PointLight, true).with(Need::Linear, true).with(Need::Rgb888, true);
+pub const SMALLEST: Needs = Needs::NONE
+    .with(Need::WholeTriangles, true)
+    .with(Need::PointLight, true)
+    .with(Need::Linear, true)
+    .with(Need::Rgb888, true);
 
 /// All that the light of a scene may need, to sRGB and RGB888: what is left out are other cameras, outputs and wider indices.
 pub const WHITTED: Needs = Needs::ALL
@@ -30,6 +34,7 @@ pub const WHITTED: Needs = Needs::ALL
     .without(Need::WideIds)
     .without(Need::WideNormals)
     .without(Need::WideUvs)
+    .without(Need::SharedVertices)
     .without(Need::Orthographic)
     .without(Need::Rgb565)
     .without(Need::Gray8);
@@ -56,6 +61,7 @@ pub fn alone(need: Need) -> Option<[Needs; 2]> {
     let replaced = match need {
         Need::DirectionalLight => Some(Need::PointLight),
         Need::Srgb => Some(Need::Linear),
+        Need::SharedVertices => Some(Need::WholeTriangles),
         Need::Rgb565 | Need::Gray8 => Some(Need::Rgb888),
         _ => None,
     };

@@ -33,7 +33,7 @@ fn is(kind: MaterialKind, material: &Material) -> bool {
 }
 
 /// The bits of `needs` that follow from looks.
-pub(crate) fn needs(blob: &Blob, model: &Model) -> u32 {
+pub(crate) fn needs(blob: &Blob, model: &Model) -> u64 {
     let share = |index: usize| used(model).any(|m| weights(m)[index] > 0.0);
     let lobe = |lobe| {
         used(model)
@@ -60,10 +60,10 @@ pub(crate) fn needs(blob: &Blob, model: &Model) -> u32 {
         (18, tinted && !model.lights.is_empty() && model.render.shadows),
         (28, schlick),
         (30, model.lights.len() > 1),
-        (31, blob.header.max_depth > 0 && (share(2) || share(3))),
+        (32, blob.header.max_depth > 0 && (share(2) || share(3))),
     ]
     .into_iter()
-    .fold(0, |bits, (bit, is_needed)| bits | u32::from(is_needed) << bit)
+    .fold(0, |bits, (bit, is_needed)| bits | u64::from(is_needed) << bit)
 }
 
 /// Whether a colour of the blob is one of the model, to the nearest.
