@@ -172,7 +172,10 @@ impl<'a, P: Profile> Scene<'a, P> {
     /// The surface and the material of a hit; `None` for a miss.
     #[inline(always)]
     fn surface(&self, ray: &RayOf<P>, hit: u32) -> Option<(Surface<SpaceOf<P>>, &'a Material)> {
-        // No hit is past the end of both.
+        // No hit is past the end of triangles; past that of spheres too, but then it takes a look at both.
+        if P::NEEDS.has(Need::Spheres) && hit == NONE {
+            return None;
+        }
         let (number, mut surface) = match self.bvh.sphere(hit) {
             Some(sphere) => (P::Kernel::sphere_material(sphere), P::Kernel::resolve_sphere(ray, sphere)),
             None => {
