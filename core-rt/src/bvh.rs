@@ -143,7 +143,11 @@ impl<'a, P: Profile> Bvh<'a, P> {
     #[inline]
     #[must_use]
     pub fn id(&self, index: u32) -> u32 {
-        if P::NEEDS.has(Need::Ids) && !self.ids.is_empty() { self.ids.get(index) } else { self.triangles.id(index) }
+        let are_apart = match (P::NEEDS.has(Need::Ids), P::NEEDS.has(Need::IdsInRecords)) {
+            (true, true) => !self.ids.is_empty(),
+            (apart, _) => apart,
+        };
+        if are_apart { self.ids.get(index) } else { self.triangles.id(index) }
     }
 
     /// The boxes of all primitives, triangles first.

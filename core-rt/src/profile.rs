@@ -82,11 +82,13 @@ pub enum Need {
     Bounces = 1 << 32,
     /// Ids apart from what they are of.
     Ids = 1 << 33,
+    /// Ids beside the materials of records.
+    IdsInRecords = 1 << 34,
 }
 
 impl Need {
     /// All of them.
-    pub const ALL: [Self; 34] = [
+    pub const ALL: [Self; 35] = [
         Self::PointLight,
         Self::DirectionalLight,
         Self::Shadows,
@@ -121,6 +123,7 @@ impl Need {
         Self::SharedVertices,
         Self::Bounces,
         Self::Ids,
+        Self::IdsInRecords,
     ];
 
     /// Its bit in a header: 0 to 63.
@@ -167,6 +170,7 @@ impl Display for Need {
             Self::SeveralLights => "several lights",
             Self::Bounces => "rays that go on",
             Self::Ids => "ids of their own",
+            Self::IdsInRecords => "ids in records",
         })
     }
 }

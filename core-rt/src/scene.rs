@@ -217,6 +217,7 @@ fn geometry<'a, P: Profile>(
         && (whole || shared) == (counts.triangles > 0)
         && shared == (counts.vertices > 0)
         // Only records have ids in them.
+        && apart != header.needs.has(Need::IdsInRecords)
         && (apart || (whole && counts.spheres == 0 && header.material_bits < Mesh::<P>::NO_IDS))
         && header.needs.has(Need::Spheres) == (counts.spheres > 0)
         && counts.smooth == if smooth { counts.triangles } else { 0 }

@@ -104,7 +104,9 @@ fn shaded<'a, P: Profile>(
         };
         // One light takes no loop.
         if P::NEEDS.has(Need::SeveralLights) {
-            (0..).zip(scene.shading.lights).for_each(|(number, light)| add(number, light));
+            for (number, light) in (0..).zip(scene.shading.lights) {
+                add(number, light);
+            }
         } else if let Some(light) = scene.shading.lights.first() {
             add(0, light);
         }
@@ -179,8 +181,8 @@ impl<'a, P: Profile> Scene<'a, P> {
         let (number, mut surface) = match self.bvh.sphere(hit) {
             Some(sphere) => (P::Kernel::sphere_material(sphere), P::Kernel::resolve_sphere(ray, sphere)),
             None => {
-                let triangle = self.bvh.triangles.get(hit)?;
-                (self.bvh.triangles.material(hit)?, P::Kernel::resolve(ray, &triangle))
+                let surface = self.bvh.triangles.of(hit, |triangle| P::Kernel::resolve(ray, triangle))?;
+                (self.bvh.triangles.material(hit)?, surface)
             }
         };
         let material = self.shading.materials.get(number as usize)?;

@@ -33,9 +33,8 @@ pub(crate) fn draw<P: Profile>(scene: &Scene<'_, P>, tile: Tile, workspace: &mut
 
 /// What the hit of a ray sends back, by Lambert's law; `None` for a miss.
 fn lit<P: Profile>(scene: &Scene<'_, P>, ray: &<P::Kernel as Kernel>::Ray, hit: u32) -> Option<ColourOf<P>> {
-    let triangle = scene.bvh.triangles.get(hit)?;
     let material = scene.shading.materials.get(scene.bvh.triangles.material(hit)? as usize)?;
-    let surface = P::Kernel::resolve(ray, &triangle);
+    let surface = scene.bvh.triangles.of(hit, |triangle| P::Kernel::resolve(ray, triangle))?;
     let mut colour = ColourOf::<P>::default();
     if material.albedo != [0; 3]
         && let Some(light) = scene.shading.lights.first()

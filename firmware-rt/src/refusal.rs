@@ -72,6 +72,7 @@ fn name(need: Need) -> defmt::Str {
         Need::Bounces => defmt::intern!("rays that go on"),
         Need::WholeTriangles => defmt::intern!("triangles with records"),
         Need::SharedVertices => defmt::intern!("shared vertices"),
+        Need::IdsInRecords => defmt::intern!("ids in records"),
         Need::Ids => defmt::intern!("ids of their own"),
     }
 }

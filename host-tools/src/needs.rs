@@ -62,6 +62,7 @@ fn of<K: Kernel>(scene: &Scene<'_, Full<K>>, header: &Header, need: Need) -> Ask
             things(smooth(), "triangle", shading.normal_indices.size() + size_of_val(shading.normals))
         }
         Need::WideNormals => things(shading.normals.len() as u64, "normal", shading.normal_indices.size() / 2),
+        Need::IdsInRecords => things(triangles, "triangle", 0),
         Need::Ids => things(triangles, "triangle", scene.bvh.ids.size()),
         Need::WideIds => things(triangles, "triangle", scene.bvh.ids.size() / 2),
         Need::Emission => materials(&|m, _| !m.emission.is_black(), 0),

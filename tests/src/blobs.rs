@@ -124,7 +124,7 @@ impl<K: Kernel> Draft<K> {
             self.triangle(&K::vertices(record), material).expect("a smaller number is held too")
         };
         self.triangles = self.triangles.iter().map(apart).collect();
-        self.header.needs = self.header.needs.with(Need::Ids, true);
+        self.header.needs = self.header.needs.without(Need::IdsInRecords).with(Need::Ids, true);
     }
 
     /// The blob of what is here, with the prefix and the checksum that it should have.

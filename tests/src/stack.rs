@@ -98,7 +98,11 @@ fn function(code: &Code, start: u64, size: u64, name: String) -> Result<Function
         }
         if is_wide && let Some(second) = code.at(address + 2) {
             if let Some(offset) = branch(first, second) {
-                found.calls.push((address + 4).wrapping_add_signed(offset));
+                let target = (address + 4).wrapping_add_signed(offset);
+                // Into its own midst it is a jump that is too far for `b`.
+                if !(start + 1..start + size).contains(&target) {
+                    found.calls.push(target);
+                }
             }
             address += 2;
         }
@@ -165,6 +169,9 @@ mod tests {
         assert_eq!((branch(0xf001, 0xf800), branch(0xf7ff, 0xfffd)), (Some(0x1000), Some(-6)));
         assert_eq!(branch(0xf3ef, 0x8000), None, "mrs");
         assert_eq!(of(&[0xf001, 0xf800]).map(|f| f.calls), Ok(vec![0x1104]));
+        // bl into its own midst is a jump, and to its own start a circle.
+        assert_eq!(of(&[0xb500, 0xf7ff, 0xfffe, 0xbd00]).map(|f| f.calls), Ok(vec![]));
+        assert_eq!(of(&[0xb500, 0xf7ff, 0xfffd, 0xbd00]).map(|f| f.calls), Ok(vec![0x100]));
         // b to itself stays.
         assert_eq!(of(&[0xe7fe]).map(|f| f.calls), Ok(vec![]));
     }

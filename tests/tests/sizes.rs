@@ -87,7 +87,7 @@ fn nothing_is_linked_for_which_nothing_asks() {
 }
 
 /// The needs that have no routine of their own.
-const BRANCHES: [Need; 13] = [
+const BRANCHES: [Need; 16] = [
     Need::PointLight,
     Need::DirectionalLight,
     Need::Emission,
@@ -99,6 +99,9 @@ const BRANCHES: [Need; 13] = [
     Need::Rgb888,
     Need::SeveralLights,
     Need::Bounces,
+    Need::WholeTriangles,
+    Need::Ids,
+    Need::IdsInRecords,
     // Each has what the other one has, and something of its own, or not.
     Need::Phong,
     Need::Reflection,

@@ -19,7 +19,7 @@ pub(crate) fn all<P: Profile>(header: &Header, scene: &Scene<'_, P>) -> Result<(
     tree(header, &scene.bvh)?;
     contents(header, &scene.bvh, &scene.shading)?;
     if P::NEEDS.paint() {
-        scene.shading.paint.check(header.counts.triangles)?;
+        scene.shading.paint.check::<P>(header.counts.triangles)?;
     }
     Ok(())
 }

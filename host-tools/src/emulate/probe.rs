@@ -24,6 +24,7 @@ pub const EMPTY: &str = "empty";
 /// One point light on matt, flat triangles, without shadows, to linear RGB888: no scene that is lit needs less.
 pub const SMALLEST: Needs = Needs::NONE
     .with(Need::WholeTriangles, true)
+    .with(Need::IdsInRecords, true)
     .with(Need::PointLight, true)
     .with(Need::Linear, true)
     .with(Need::Rgb888, true);
@@ -35,6 +36,7 @@ pub const WHITTED: Needs = Needs::ALL
     .without(Need::WideNormals)
     .without(Need::WideUvs)
     .without(Need::SharedVertices)
+    .without(Need::IdsInRecords)
     .without(Need::Orthographic)
     .without(Need::Rgb565)
     .without(Need::Gray8);
@@ -57,11 +59,19 @@ pub fn alone(need: Need) -> Option<[Needs; 2]> {
     if SMALLEST.has(need) {
         return None;
     }
-    let without = presupposed(need).iter().fold(SMALLEST, |needs, &other| needs.with(other, true));
+    // Only records of triangles have ids in them.
+    let smallest = match need {
+        Need::SharedVertices | Need::Spheres | Need::WideIds => {
+            SMALLEST.without(Need::IdsInRecords).with(Need::Ids, true)
+        }
+        _ => SMALLEST,
+    };
+    let without = presupposed(need).iter().fold(smallest, |needs, &other| needs.with(other, true));
     let replaced = match need {
         Need::DirectionalLight => Some(Need::PointLight),
         Need::Srgb => Some(Need::Linear),
         Need::SharedVertices => Some(Need::WholeTriangles),
+        Need::Ids => Some(Need::IdsInRecords),
         Need::Rgb565 | Need::Gray8 => Some(Need::Rgb888),
         _ => None,
     };

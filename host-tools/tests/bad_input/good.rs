@@ -60,7 +60,7 @@ fn inspect() {
     }
     assert_eq!(of_scene["blob_bytes"], folder.read("scene.blob").len());
     assert_eq!((&of_scene["triangles"], &of_scene["grid_bits"]), (&1.into(), &29.into()));
-    let needs = ["point lights", "shadows", "sRGB output", "RGB888 output", "triangles with records"];
+    let needs = ["point lights", "shadows", "sRGB output", "RGB888 output", "triangles with records", "ids in records"];
     assert_eq!(of_scene["needs"], serde_json::json!(needs));
     // Why it needs them, without a look at a board.
     let lights = &of_scene["needs_explained"][0];

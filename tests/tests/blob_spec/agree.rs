@@ -94,7 +94,10 @@ fn header(blob: &Blob, model: &Model) -> Checked {
     // The largest material has all its bits set.
     let room = blob.kernel.material_most.count_ones();
     let beside = !shared && blob.spheres.is_empty() && bits(model.triangles.len()) + bits(blob.materials.len()) <= room;
-    let layout = u64::from(has && !shared) << 29 | u64::from(has && shared) << 31 | u64::from(!beside) << 33;
+    let layout = u64::from(has && !shared) << 29
+        | u64::from(has && shared) << 31
+        | u64::from(!beside) << 33
+        | u64::from(beside) << 34;
     rule(!beside || header.material_bits == bits(blob.materials.len()), "bits of materials")?;
     rule(header.needs == needs | pixels | layout, "needs")?;
     rule(header.format == format, "format")?;

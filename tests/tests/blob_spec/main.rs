@@ -125,7 +125,8 @@ fn what_goes_in_is_read_by_the_document() {
         assert!(mixed.corners.contains(&None) && mixed.corners.iter().any(Option::is_some));
         assert!(
             mixed.header.depth > 5
-                && mixed.header.needs >> 8 == (1 << 25 | 1 << 29 | u64::from(kernel == "exact14") << 33) >> 8
+                && mixed.header.needs >> 8
+                    == (1 << 25 | 1 << 29 | if kernel == "exact14" { 1 << 33 } else { 1 << 34 }) >> 8
         );
         assert!(flat.corners.is_empty() && flat.normals.is_empty());
     }
