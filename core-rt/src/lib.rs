@@ -15,7 +15,7 @@
 //! scene.
 //!
 //! # Tracing
-//! [`camera`] rays go through the [`bvh`], hits are shaded, and [`render`] brings tiles to a sink. A
+//! [`camera`] rays go through the [`bvh`], a [`tile`] at a time, hits are shaded, and [`render`] brings tiles to a sink. A
 //! [`profile`] says what is compiled in; [`stats`] count the work.
 #![no_std]
 #![forbid(unsafe_code)]
@@ -45,4 +45,5 @@ pub mod sphere;
 mod srgb;
 pub mod stats;
 pub mod texture;
+pub mod tile;
 pub mod whitted;

@@ -5,7 +5,7 @@
 
 use crate::bvh::{Intersect, Stack};
 use crate::colour::{Colour, Transfer};
-use crate::kernel::Kernel;
+use crate::kernel::{Kernel, NONE};
 use crate::profile::{Need, Profile};
 use crate::samples::Places;
 use crate::scene::Scene;
@@ -191,7 +191,9 @@ pub fn render_tile<'w, P: Profile>(
             left -= room;
             let hits = hits.get_mut(..room).unwrap_or_default();
             let again = rays.clone();
-            scene.bvh.closest_tile(rays.by_ref().take(room), hits, stack, stats);
+            for (hit, ray) in hits.iter_mut().zip(rays.by_ref()) {
+                *hit = ray.as_ref().map_or(NONE, |ray| scene.bvh.closest(ray, stack, stats));
+            }
             for (&hit, ray) in hits.iter().zip(again) {
                 sum = sum.plus(seen(scene, ray.as_ref(), hit, stack, branches, stats).clamped());
                 taken += 1;
@@ -205,7 +207,7 @@ pub fn render_tile<'w, P: Profile>(
         }
     } else {
         let ray = |[x, y]: [u16; 2]| scene.primary(&scene.camera, x, y);
-        scene.bvh.closest_tile(places.clone().map(ray), hits, stack, stats);
+        scene.bvh.closest_tile(scene.shared_origin(), ray, tile, hits, stack, stats);
         for ((pixel, &hit), place) in pixels.chunks_exact_mut(format.bytes()).zip(&*hits).zip(places) {
             let seen = seen(scene, ray(place).as_ref(), hit, stack, branches, stats);
             format.put(seen, transfer, place, pixel);

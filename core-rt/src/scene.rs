@@ -148,6 +148,13 @@ impl<P: Profile> Scene<'_, P> {
         if self.frame.needs.branches() { usize::from(self.frame.max_depth) + 1 } else { 0 }
     }
 
+    /// The camera, where all its rays start at its eye.
+    #[inline]
+    #[must_use]
+    pub fn shared_origin(&self) -> Option<&Camera<<P::Kernel as Kernel>::Word>> {
+        (!P::NEEDS.has(Need::Orthographic) || !self.frame.needs.has(Need::Orthographic)).then_some(&self.camera)
+    }
+
     /// The ray of a camera, the scene's or one that looks [through](Camera::through) other places, that goes through a pixel;
     /// `None` where the direction is zero.
     #[inline]

@@ -33,7 +33,7 @@ pub fn find<P: Profile>(
 ) {
     let ray = |[x, y]: [u16; 2]| scene.primary(&scene.camera, x, y);
     match way {
-        Way::Tile => scene.bvh.closest_tile(tile.places().map(ray), hits, stack, stats),
+        Way::Tile => scene.bvh.closest_tile(scene.shared_origin(), ray, tile, hits, stack, stats),
         Way::Single => {
             for (hit, place) in hits.iter_mut().zip(tile.places()) {
                 stats.ray(RayKind::Primary);

@@ -1,0 +1,313 @@
+//! The rays of a tile, and what bounds them.
+//!
+//! # Directions
+//! All is in 32 bits, whatever the width: directions in units of 2^(`DIRECTION_BITS` - 13), with F fractional bits. In pixel
+//! (i, j) of the tile d = first + i right + j down is within `spread` of the direction D that the pixel's ray has: half a
+//! unit of D that the camera rounds by, and 8 2^-F, since `first` and 7 steps each way are rounded down and 7 2^-F is added.
+//!
+//! # Planes
+//! Depth is along the axis u. For another axis v, with s at least D_v / |D_u| for all rays, no ray reaches p_v > s |p_u|, and a
+//! box that is beyond that in all its corners is missed; likewise below. The quotient of two functions that are linear in the
+//! pixel has its ends in the corners of the tile; what the rays are off their d moves it by at most
+//! spread (1 + |s|) / |D_u|.
+//!
+//! # Edges
+//! With P, Q and R the corners of a triangle less the origin, det = D . N and N = P x Q + Q x R + R x P, the ray meets the
+//! triangle iff D . (P x Q), D . (Q x R) and D . (R x P) have the sign of P . N, or are 0, and det has it; then t = P . N / det.
+//! These are the numbers of the [triangle test](super::triangle), up to sign. 1 / t is linear in D. `docs/EXACTNESS.md` has the bounds step by step.
+
+use super::boxes::BoxNode;
+use super::width::{Distance, Wide, Width};
+use super::Exact;
+use crate::camera::Camera;
+use crate::kernel::Vertices;
+use crate::num::{Triple, Word, bits, cross, mantissa, reciprocal};
+use crate::render::Tile;
+use crate::tile::{Beam, Edges, Footprint, Linear};
+
+/// The bits of a direction's component, without those below the unit.
+const UNIT_BITS: u32 = 13;
+
+/// Fractional bits of directions, at most and at least.
+const FRACTION_BITS: [u32; 2] = [4, 8];
+
+/// Steps from pixel to pixel are below 2^13 in the last bit.
+const STEP_BITS: u32 = 13;
+
+/// Fractional bits of slopes, which are below 2.
+const SLOPE_BITS: u32 = 14;
+
+/// The least component along the axis of depth, units.
+const DEPTH_MIN: i32 = 1 << 9;
+
+/// Bits of a coordinate that boxes are tested with.
+const BOX_BITS: u32 = 15;
+
+/// Fractional bits of a nearness: of a direction's component along the axis of depth by a depth in [`BOX_BITS`].
+const NEARNESS_BITS: u32 = 18;
+
+/// What a nearness of less is not made a limit of: no depth is as large.
+const NEARNESS_MIN: i32 = 1 << 8;
+
+/// A plane that no ray passes, through an axis: the sign of `v 2^14 - slope u - offset`.
+#[derive(Clone, Copy, Debug)]
+struct Side {
+    slope: i32,
+    offset: i32,
+}
+
+impl Side {
+    /// On which side of it a point is; |v - o_v| and |u - o_u| are at most 2^15 and |slope| is below 2^15, so it is below 2^31.
+    #[inline(always)]
+    fn beyond(self, u: i32, v: i32) -> i32 {
+        (v << SLOPE_BITS).wrapping_sub(self.slope.wrapping_mul(u)).wrapping_sub(self.offset)
+    }
+}
+
+/// The rays of a tile.
+#[derive(Clone, Copy, Debug)]
+pub struct Frustum<W: Width> {
+    origin: Triple<W::Word>,
+    /// The direction in the first pixel: units, and what is left of them.
+    first: Triple<i32>,
+    rest: Triple<i32>,
+    right: Triple<i32>,
+    down: Triple<i32>,
+    fraction_bits: u32,
+    /// The last pixel.
+    last: [i32; 2],
+    /// By how much a component may be off, with the fractional bits.
+    spread: i32,
+    /// What the magnitudes of a direction's components sum to at most, units.
+    length: i32,
+    /// The axis of depth, and whether it is looked along downwards.
+    axis: usize,
+    is_down: bool,
+    /// The largest component along it.
+    largest: i32,
+    /// The origin that depths of low planes and high ones are counted from.
+    depth_origin: [i32; 2],
+    /// Of the two other axes, what high and low planes are tested with.
+    sides: [[Side; 2]; 2],
+}
+
+impl<W: Width> Frustum<W> {
+    /// The bits of a direction below a unit.
+    const DROPPED_BITS: u32 = W::DIRECTION_BITS.saturating_sub(UNIT_BITS);
+    /// The bits of a coordinate that are not looked at.
+    const COARSE_BITS: u32 = W::GRID_BITS.saturating_sub(BOX_BITS);
+
+    /// A coordinate of a box.
+    #[inline(always)]
+    fn coarse(plane: <W::Node as BoxNode>::Plane) -> i32 {
+        let plane: W::Word = plane.into();
+        (plane >> Self::COARSE_BITS).low_i32()
+    }
+
+    #[inline(always)]
+    fn linear(&self, g: Triple<i32>) -> Linear {
+        let f = self.fraction_bits;
+        let dot = |d: &Triple<i32>| d[0] * g[0] + d[1] * g[1] + d[2] * g[2];
+        Linear { first: dot(&self.first) + (dot(&self.rest) >> f), right: dot(&self.right) >> f, down: dot(&self.down) >> f }
+    }
+
+    /// The sum of the magnitudes of a vector's components times what directions are off, rounded up.
+    #[inline(always)]
+    fn off(&self, g: Triple<i32>) -> i32 {
+        let sum = g[0].abs() + g[1].abs() + g[2].abs();
+        ((sum * self.spread) >> self.fraction_bits) + 1
+    }
+}
+
+/// `value` rounded to a multiple of 2^shift, and divided by it.
+#[inline(always)]
+fn rounded<T: Word>(value: T, shift: u32) -> i32 {
+    ((value + ((T::ONE << shift) >> 1)) >> shift).low_i32()
+}
+
+impl<W: Width> Beam<Exact<W>> for Frustum<W> {
+    fn new(camera: &Camera<W::Word>, tile: Tile) -> Option<Self> {
+        let (fraction, [first, right, down]) = camera.linear(tile.x, tile.y);
+        let [least, most] = FRACTION_BITS;
+        let cut = (fraction + Self::DROPPED_BITS) as i32 - most as i32;
+        let taken = |v: Triple<W::Word>| {
+            v.map(|c| if cut < 0 { c << cut.unsigned_abs() } else { c >> cut.unsigned_abs() }.low_i32())
+        };
+        let [first, right, down] = [taken(first), taken(right), taken(down)];
+        let above = bits(right).max(bits(down)).saturating_sub(STEP_BITS);
+        if above > most - least {
+            return None;
+        }
+        let fraction_bits = most - above;
+        let first = first.map(|c| (c >> above) + i32::from(SIDE_LAST));
+        let [right, down] = [right, down].map(|step| step.map(|c| c >> above));
+        let last = [i32::from(tile.width) - 1, i32::from(tile.height) - 1];
+        let spread = ((1 << fraction_bits) >> (Self::DROPPED_BITS + 1)) + 9;
+
+        // The corners, in quarters of a unit.
+        let quarters = fraction_bits - 2;
+        let corner = |x: i32, y: i32| [0, 1, 2].map(|axis| (first[axis] + x * right[axis] + y * down[axis]) >> quarters);
+        let corners = [corner(0, 0), corner(last[0], 0), corner(0, last[1]), corner(last[0], last[1])];
+        let middle = [0, 1, 2].map(|axis| (corners[0][axis] + corners[3][axis]).abs());
+        let axis = if middle[0] >= middle[1] && middle[0] >= middle[2] {
+            0
+        } else {
+            1 + usize::from(middle[2] > middle[1])
+        };
+        let is_down = corners[0][axis] < 0;
+        let across = [(axis + 1) % 3, (axis + 2) % 3];
+        let (mut low, mut high, mut largest, mut smallest) = ([i32::MAX; 2], [i32::MIN; 2], 0, i32::MAX);
+        for corner in &corners {
+            let depth = if is_down { -corner[axis] } else { corner[axis] };
+            if depth < 4 * DEPTH_MIN {
+                return None;
+            }
+            (largest, smallest) = (depth.max(largest), depth.min(smallest));
+            let r = reciprocal(depth as u32);
+            for which in [0, 1] {
+                let v = corner[across[which]];
+                if v.abs() >= 2 * depth {
+                    return None;
+                }
+                // |v| is below 2^16 and the mantissa, halved, below 2^15.
+                let slope = (v * (r.mantissa >> 1) as i32) >> (r.log2_d + 1);
+                (low[which], high[which]) = (slope.min(low[which]), slope.max(high[which]));
+            }
+        }
+        let r = reciprocal((smallest - 8) as u32);
+        let off = 3 * ((spread >> quarters) + 2);
+        let margin = ((off * r.mantissa as i32) >> (r.log2_d + 2)) + 8;
+        if low.iter().any(|&low| low - margin <= -(2 << SLOPE_BITS)) || high.iter().any(|&high| high + margin >= 2 << SLOPE_BITS) {
+            return None;
+        }
+        let origin = camera.eye();
+        let up = |axis: usize| -((-origin[axis]) >> Self::COARSE_BITS).low_i32();
+        let below = |axis: usize| (origin[axis] >> Self::COARSE_BITS).low_i32() - i32::from(Self::COARSE_BITS > 0);
+        let side = |which: usize, slope: i32, is_low: bool| {
+            let slope = if is_down { -slope } else { slope };
+            // What low planes are counted from, and high ones.
+            let from = |axis: usize, is_low: bool| if is_low { up(axis) } else { below(axis) };
+            let u_is_low = (slope < 0) == is_low;
+            let offset = (from(across[which], is_low) << SLOPE_BITS).wrapping_sub(slope.wrapping_mul(from(axis, u_is_low)));
+            Side { slope, offset }
+        };
+        let sides = [0, 1].map(|which| [side(which, high[which] + margin, true), side(which, low[which] - margin, false)]);
+        let sum = |v: &Triple<i32>| v[0].abs() + v[1].abs() + v[2].abs();
+        let length = ((sum(&first) + last[0] * sum(&right) + last[1] * sum(&down)) >> fraction_bits) + 4;
+        let mask = (1 << fraction_bits) - 1;
+        Some(Self {
+            origin,
+            first: first.map(|c| c >> fraction_bits),
+            rest: first.map(|c| c & mask),
+            right,
+            down,
+            fraction_bits,
+            last,
+            spread,
+            length,
+            axis,
+            is_down,
+            largest: (largest >> 2) + 2 + (spread >> fraction_bits),
+            depth_origin: [up(axis), below(axis)],
+            sides,
+        })
+    }
+
+    #[inline(always)]
+    fn axis(&self) -> usize {
+        self.axis
+    }
+
+    #[inline(always)]
+    fn reach(&self) -> Distance<W> {
+        <Distance<W> as Word>::from_i32(i32::MAX)
+    }
+
+    #[inline]
+    fn limit(&self, nearness: i32) -> Distance<W> {
+        if nearness < NEARNESS_MIN {
+            return self.reach();
+        }
+        let r = reciprocal(nearness as u32);
+        // The component is at most 2^13 + 11, the mantissa with its error at most 2^16 + 4.
+        let limit = (self.largest as u32 * (r.mantissa + 5)) >> (r.log2_d - (NEARNESS_BITS - 16));
+        <Distance<W> as Word>::from_i32(limit as i32 + 1)
+    }
+
+    #[inline(always)]
+    fn enter<const AXIS: usize>(&self, node: &W::Node, child: usize, limit: Distance<W>) -> Option<Distance<W>> {
+        let [low, high] = &node.planes()[child];
+        let (u_low, u_high) = (Self::coarse(low[AXIS]), Self::coarse(high[AXIS]));
+        let (low_depth, high_depth) = (u_low - self.depth_origin[0], u_high - self.depth_origin[1]);
+        let (near, far) = if self.is_down { (-high_depth, -low_depth) } else { (low_depth, high_depth) };
+        let near = <Distance<W> as Word>::from_i32(near);
+        if far <= 0 || near > limit {
+            return None;
+        }
+        for which in [0, 1] {
+            let axis = (AXIS + 1 + which) % 3;
+            let [above, below] = self.sides[which];
+            let v = Self::coarse(low[axis]);
+            let u = if above.slope < 0 { u_low } else { u_high };
+            if above.beyond(u, v) > 0 {
+                return None;
+            }
+            let v = Self::coarse(high[axis]);
+            let u = if below.slope < 0 { u_high } else { u_low };
+            if below.beyond(u, v) < 0 {
+                return None;
+            }
+        }
+        Some(near)
+    }
+
+    #[inline(never)]
+    fn footprint(&self, vertices: &Vertices) -> Footprint {
+        let [p, q, r] = vertices.map(|vertex| {
+            let from = |axis: usize| W::Word::from_i32(vertex[axis]) - self.origin[axis];
+            [from(0), from(1), from(2)]
+        });
+        let [a, b, c] = [cross(p, q), cross(q, r), cross(r, p)];
+        let sum = |axis: usize| a[axis].wrapping_sub(-b[axis]).wrapping_sub(-c[axis]);
+        let normal = [sum(0), sum(1), sum(2)];
+        let volume = W::dot(p, normal);
+        let zero = W::Wide::default();
+        if volume == zero {
+            return Footprint::Nothing;
+        }
+        let shift = bits(a).max(bits(b)).max(bits(c)).saturating_sub(16);
+        let mut edges = [Linear::default(); 3];
+        let mut certain = [0; 3];
+        for ((edge, certain), vector) in edges.iter_mut().zip(&mut certain).zip([a, b, c]) {
+            let g = if volume < zero { vector.map(|c| -rounded(c, shift)) } else { vector.map(|c| rounded(c, shift)) };
+            let linear = self.linear(g);
+            let band = self.off(g) + (self.length >> 1) + 17;
+            *edge = Linear { first: linear.first + band, ..linear };
+            if edge.most(self.last) < 0 {
+                return Footprint::Nothing;
+            }
+            *certain = 2 * band;
+        }
+        let (leading, length) = (if volume < zero { -volume } else { volume }).leading();
+        let m = mantissa(leading) as i32;
+        let normal_shift = bits(normal).saturating_sub(15);
+        let factor = if volume < zero { -m } else { m };
+        let towards = normal.map(|c| (rounded(c, normal_shift) * factor) >> 15);
+        let nearness_shift = length as i32 - normal_shift as i32 - Self::COARSE_BITS as i32 - NEARNESS_BITS as i32;
+        if !(1..32).contains(&nearness_shift) {
+            return Footprint::Unknown;
+        }
+        let nearness = self.linear(towards);
+        let band = self.off(towards) + 6 * self.length;
+        Footprint::Edges(Edges {
+            edges,
+            certain,
+            nearness,
+            shift: nearness_shift as u32,
+            band: (band >> nearness_shift) + 2,
+        })
+    }
+}
+
+/// The last column and row of a tile, at most.
+const SIDE_LAST: u8 = crate::tile::SIDE as u8 - 1;

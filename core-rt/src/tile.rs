@@ -1,0 +1,150 @@
+//! Tiles of camera rays that walk the tree together.
+//!
+//! The rays of a small rectangle of pixels start at one point and their directions are linear in the pixel, but for rounding.
+//! So a box is tested against the four planes around all of them (a [`Beam`]), and a triangle is drawn into the rectangle as a
+//! rasteriser does it: edge functions and the inverse of the depth are linear in the pixel, and are stepped by addition
+//! (Pineda, "A Parallel Algorithm for Polygon Rasterization", 1988; Reshetov, Soupikov & Hurley, "Multi-Level Ray Tracing
+//! Algorithm", 2005). Every stepped value has a stated bound on its error. Where a sign, or which of two hits is nearer, is not
+//! certain within that bound, the ray of the pixel is tested by itself: the hits are those of single rays, all of them.
+
+use crate::camera::Camera;
+use crate::kernel::{Kernel, Vertices};
+use crate::render::Tile;
+
+/// Pixels a side that walk together, at most.
+pub const SIDE: u16 = 8;
+
+/// What a pixel without a hit has for a nearness; all others are in [0, 2^30).
+pub(crate) const NOWHERE: i32 = -(1 << 29);
+
+/// The rays of a tile, at most [`SIDE`] pixels wide and high.
+///
+/// Depth is counted along one axis, that along which the middle of the tile looks: distances to boxes are coordinates.
+pub trait Beam<K: Kernel>: Sized {
+    /// `None` where the tile's rays are to be traced one by one.
+    fn new(camera: &Camera<K::Word>, tile: Tile) -> Option<Self>;
+    /// The axis of depth.
+    fn axis(&self) -> usize;
+    /// The limit beyond which nothing counts.
+    fn reach(&self) -> K::Distance;
+    /// A limit for [`Beam::enter`] that leaves out nothing that could be at or before what is at least so near in every pixel.
+    fn limit(&self, nearness: i32) -> K::Distance;
+    /// Where the rays may enter a child of a node, 0 or 1, if one of them may before `limit`.
+    fn enter<const AXIS: usize>(&self, node: &K::Node, child: usize, limit: K::Distance) -> Option<K::Distance>;
+    /// What of the tile a triangle covers.
+    fn footprint(&self, vertices: &Vertices) -> Footprint;
+}
+
+/// Of kernels that trace every ray by itself.
+#[derive(Clone, Copy, Debug)]
+pub enum NoBeam {}
+
+impl<K: Kernel> Beam<K> for NoBeam {
+    fn new(_: &Camera<K::Word>, _: Tile) -> Option<Self> {
+        None
+    }
+
+    fn axis(&self) -> usize {
+        match *self {}
+    }
+
+    fn reach(&self) -> K::Distance {
+        match *self {}
+    }
+
+    fn limit(&self, _: i32) -> K::Distance {
+        match *self {}
+    }
+
+    fn enter<const AXIS: usize>(&self, _: &K::Node, _: usize, _: K::Distance) -> Option<K::Distance> {
+        match *self {}
+    }
+
+    fn footprint(&self, _: &Vertices) -> Footprint {
+        match *self {}
+    }
+}
+
+/// A function that is linear in the pixel of a tile, counted from its first: its value there, and what a step to the right
+/// and one down adds.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Linear {
+    /// In the first pixel.
+    pub first: i32,
+    /// To the right.
+    pub right: i32,
+    /// Down.
+    pub down: i32,
+}
+
+impl Linear {
+    /// The largest value in a tile whose last pixel is at `last`.
+    #[inline(always)]
+    #[must_use]
+    pub fn most(&self, last: [i32; 2]) -> i32 {
+        self.first + last[0] * self.right.max(0) + last[1] * self.down.max(0)
+    }
+}
+
+/// What a triangle covers of a tile.
+#[derive(Clone, Copy, Debug)]
+pub enum Footprint {
+    /// Nothing.
+    Nothing,
+    /// Perhaps any pixel.
+    Unknown,
+    /// By its edges.
+    Edges(Edges),
+}
+
+/// A triangle in the pixels of a tile.
+#[derive(Clone, Copy, Debug)]
+pub struct Edges {
+    /// One is negative where the ray certainly misses.
+    pub edges: [Linear; 3],
+    /// All are at least these where it certainly hits.
+    pub certain: [i32; 3],
+    /// The inverse of the depth, before it is shifted.
+    pub nearness: Linear,
+    /// By what it is shifted to the right.
+    pub shift: u32,
+    /// By what it may be wrong then.
+    pub band: i32,
+}
+
+impl Edges {
+    /// The inverse of the depth in a pixel.
+    #[inline(always)]
+    #[must_use]
+    pub fn nearness(&self, x: i32, y: i32) -> i32 {
+        let Linear { first, right, down } = self.nearness;
+        (first + x * right + y * down) >> self.shift
+    }
+
+    /// Goes through the pixels of a tile whose last pixel is at `last`, but for those that are certainly missed; `visit` is
+    /// told whether the pixel is certainly hit.
+    #[inline(always)]
+    pub fn visit(&self, last: [i32; 2], mut visit: impl FnMut(i32, i32, bool)) {
+        let [a, b, c] = &self.edges;
+        let along = |edge: &Linear| last[0] * edge.right.max(0);
+        let (a_most, b_most, c_most) = (along(a), along(b), along(c));
+        let (mut a_row, mut b_row, mut c_row) = (a.first, b.first, c.first);
+        for y in 0..=last[1] {
+            if ((a_row + a_most) | (b_row + b_most) | (c_row + c_most)) >= 0 {
+                let (mut a_here, mut b_here, mut c_here) = (a_row, b_row, c_row);
+                let mut inside = false;
+                for x in 0..=last[0] {
+                    if (a_here | b_here | c_here) >= 0 {
+                        inside = true;
+                        let [p, q, r] = self.certain;
+                        visit(x, y, ((a_here - p) | (b_here - q) | (c_here - r)) >= 0);
+                    } else if inside {
+                        break;
+                    }
+                    (a_here, b_here, c_here) = (a_here + a.right, b_here + b.right, c_here + c.right);
+                }
+            }
+            (a_row, b_row, c_row) = (a_row + a.down, b_row + b.down, c_row + c.down);
+        }
+    }
+}
