@@ -12,10 +12,7 @@ use crate::kernel::{Kernel, Vertices};
 use crate::render::Tile;
 
 /// Pixels a side that walk together, at most.
-pub const SIDE: u16 = 8;
-
-/// What a pixel without a hit has for a nearness; all others are in [0, 2^30).
-pub(crate) const NOWHERE: i32 = -(1 << 29);
+pub const SIDE: u16 = 16;
 
 /// The rays of a tile, at most [`SIDE`] pixels wide and high.
 ///
@@ -108,43 +105,16 @@ pub struct Edges {
     pub nearness: Linear,
     /// By what it is shifted to the right.
     pub shift: u32,
-    /// By what it may be wrong then.
+    /// By what it may be wrong, before it is shifted.
     pub band: i32,
 }
 
 impl Edges {
-    /// The inverse of the depth in a pixel.
+    /// The inverse of the depth in a pixel, before it is shifted.
     #[inline(always)]
     #[must_use]
     pub fn nearness(&self, x: i32, y: i32) -> i32 {
         let Linear { first, right, down } = self.nearness;
-        (first + x * right + y * down) >> self.shift
-    }
-
-    /// Goes through the pixels of a tile whose last pixel is at `last`, but for those that are certainly missed; `visit` is
-    /// told whether the pixel is certainly hit.
-    #[inline(always)]
-    pub fn visit(&self, last: [i32; 2], mut visit: impl FnMut(i32, i32, bool)) {
-        let [a, b, c] = &self.edges;
-        let along = |edge: &Linear| last[0] * edge.right.max(0);
-        let (a_most, b_most, c_most) = (along(a), along(b), along(c));
-        let (mut a_row, mut b_row, mut c_row) = (a.first, b.first, c.first);
-        for y in 0..=last[1] {
-            if ((a_row + a_most) | (b_row + b_most) | (c_row + c_most)) >= 0 {
-                let (mut a_here, mut b_here, mut c_here) = (a_row, b_row, c_row);
-                let mut inside = false;
-                for x in 0..=last[0] {
-                    if (a_here | b_here | c_here) >= 0 {
-                        inside = true;
-                        let [p, q, r] = self.certain;
-                        visit(x, y, ((a_here - p) | (b_here - q) | (c_here - r)) >= 0);
-                    } else if inside {
-                        break;
-                    }
-                    (a_here, b_here, c_here) = (a_here + a.right, b_here + b.right, c_here + c.right);
-                }
-            }
-            (a_row, b_row, c_row) = (a_row + a.down, b_row + b.down, c_row + c.down);
-        }
+        first + x * right + y * down
     }
 }

@@ -2,21 +2,32 @@
 
 use core::num::NonZeroU32;
 
-use super::{Bvh, Child, DistanceOf, Intersect, Primitive, RayOf, Stack, waiting};
+use super::{Bvh, Child, DistanceOf, Intersect, RayOf, Stack, waiting};
 use crate::camera::Camera;
 use crate::kernel::{Kernel, NONE};
-use crate::profile::{Need, Profile};
+use crate::num::{BitLength, Triple};
+use crate::profile::Profile;
 use crate::render::Tile;
 use crate::stats::Stats;
-use crate::tile::{Beam, Footprint, NOWHERE, SIDE};
+use crate::tile::{Beam, Edges, Footprint, SIDE};
 
 type BeamOf<P> = <<P as Profile>::Kernel as Kernel>::Beam;
 
-/// The entries of a tile of [`SIDE`] pixels.
-const PIXELS: usize = SIDE as usize * SIDE as usize;
+/// The pixels of the largest tile.
+const PIXELS: usize = 1 << (2 * SIDE_BITS);
+const SIDE_BITS: u32 = SIDE.trailing_zeros();
 
-/// What a band is where nothing is known: twice it is still below 2^31 less a nearness.
-const UNKNOWN: i32 = 1 << 29;
+/// Pixels a side of a block, which is left out at once where a triangle does not reach it.
+const BLOCK: i32 = 4;
+
+/// The nearness of no hit; others are above it.
+const NOWHERE: i16 = i16::MIN;
+
+/// The bits of a nearness for which there is room to be as near again, twice.
+const NEARNESS_BITS: u32 = 13;
+
+/// A band wider than all differences.
+const UNKNOWN: i32 = 1 << 17;
 
 /// A tile's hits so far.
 struct Found<'h> {
@@ -24,8 +35,13 @@ struct Found<'h> {
     hits: &'h mut [u32],
     /// From row to row.
     stride: usize,
-    /// How near each hit is, within the band; [`NOWHERE`] where there is none.
-    nearness: [i32; PIXELS],
+    /// Pixels without a hit.
+    left: usize,
+    /// How near each hit is, in rows of [`SIDE`].
+    nearness: [i16; PIXELS],
+    /// By what a nearness is shifted to the right; known from the first triangle on.
+    shift: Option<u32>,
+    /// By what they may be wrong.
     band: i32,
 }
 
@@ -46,14 +62,8 @@ impl<P: Profile> Bvh<'_, P> {
             let hits = hits.get_mut(start..).unwrap_or_default();
             let part = Tile { x: tile.x + part.x, y: tile.y + part.y, ..part };
             match camera.and_then(|camera| BeamOf::<P>::new(camera, part)) {
-                Some(beam) => {
-                    for row in hits.chunks_mut(stride).take(part.height.into()) {
-                        row.get_mut(..part.width.into()).unwrap_or_default().fill(NONE);
-                    }
-                    let mut found = Found { hits, stride, nearness: [NOWHERE; PIXELS], band: 0 };
-                    self.together(&beam, &ray, part, &mut found, stack, stats);
-                }
-                None => {
+                Some(beam) if self.spheres.is_empty() => self.together(&beam, &ray, part, hits, stride, stack, stats),
+                _ => {
                     for (y, row) in (part.y..).zip(hits.chunks_mut(stride).take(part.height.into())) {
                         for (x, hit) in (part.x..).zip(row.iter_mut().take(part.width.into())) {
                             *hit = ray([x, y]).as_ref().map_or(NONE, |ray| self.closest(ray, stack, stats));
@@ -64,15 +74,22 @@ impl<P: Profile> Bvh<'_, P> {
         }
     }
 
+    #[expect(clippy::too_many_arguments)]
     fn together(
         &self,
         beam: &BeamOf<P>,
         ray: &impl Fn([u16; 2]) -> Option<RayOf<P>>,
         tile: Tile,
-        found: &mut Found<'_>,
+        hits: &mut [u32],
+        stride: usize,
         stack: &mut Stack<P::Kernel>,
         stats: &mut impl Stats,
     ) {
+        for row in hits.chunks_mut(stride).take(tile.height.into()) {
+            row.get_mut(..tile.width.into()).unwrap_or_default().fill(NONE);
+        }
+        let mut found =
+            Found { hits, stride, left: tile.pixels(), nearness: [NOWHERE; PIXELS], shift: None, band: 0 };
         let mut limit = beam.reach();
         let mut next = Some(self.root);
         stack.clear();
@@ -80,15 +97,26 @@ impl<P: Profile> Bvh<'_, P> {
             let Child::Leaf { first, count } = Child::unpack(leaf.get()) else { return };
             let mut changed = false;
             for index in first..first + count {
-                changed |= self.cover(beam, ray, tile, index, found, stats);
+                let Some(triangle) = self.triangles.get(index as usize) else { continue };
+                stats.triangle();
+                match beam.footprint(&P::Kernel::vertices(triangle)) {
+                    Footprint::Nothing => {}
+                    Footprint::Edges(edges) => {
+                        let mut drawing = Drawing::new(self, &edges, ray, tile, index, &mut found);
+                        drawing.blocks();
+                        changed |= drawing.changed;
+                    }
+                    Footprint::Unknown => changed |= self.try_all(ray, tile, index, &mut found),
+                }
             }
-            if changed {
+            if changed && found.left == 0 && !stack.is_empty() {
                 limit = found.limit::<P>(beam, tile);
             }
             next = waiting::<P::Kernel>(stack, limit);
         }
     }
 
+    #[inline(always)]
     fn entered(
         &self,
         beam: &BeamOf<P>,
@@ -116,89 +144,161 @@ impl<P: Profile> Bvh<'_, P> {
         self.descend(child, limit, stack, stats, |node, child| beam.enter::<AXIS>(node, child, limit))
     }
 
-    /// Puts a primitive where it is the nearest; whether it is anywhere.
+    /// Tests a triangle with every ray; whether it is the nearest anywhere.
     #[inline(never)]
-    fn cover(
+    fn try_all(
         &self,
-        beam: &BeamOf<P>,
         ray: &impl Fn([u16; 2]) -> Option<RayOf<P>>,
         tile: Tile,
         index: u32,
         found: &mut Found<'_>,
-        stats: &mut impl Stats,
     ) -> bool {
-        let footprint = match self.triangles.get(index as usize) {
-            Some(triangle) => beam.footprint(&P::Kernel::vertices(triangle)),
-            None => Footprint::Unknown,
-        };
-        stats.triangle();
-        let last = [i32::from(tile.width) - 1, i32::from(tile.height) - 1];
         let mut changed = false;
-        match footprint {
-            Footprint::Nothing => {}
-            Footprint::Edges(edges) => {
-                let spread = found.band + edges.band;
-                let Found { hits, stride, nearness, .. } = found;
-                edges.visit(last, |x, y, certain| {
-                    let near = edges.nearness(x, y);
-                    let nearest = &mut nearness[(y as usize * usize::from(SIDE) + x as usize) % PIXELS];
-                    let nearer = near - *nearest;
-                    if nearer < -spread {
-                        return;
-                    }
-                    let Some(hit) = hits.get_mut(y as usize * *stride + x as usize) else { return };
-                    if !(certain && nearer > spread) {
-                        let [x, y] = [tile.x + x as u16, tile.y + y as u16];
-                        if !ray([x, y]).is_some_and(|ray| self.replaces(&ray, index, *hit)) {
-                            return;
-                        }
-                    }
-                    (*hit, *nearest, changed) = (index, near, true);
-                });
-                if changed {
-                    found.band = found.band.max(edges.band);
-                }
-            }
-            Footprint::Unknown => {
-                for (place, [x, y]) in tile.places().enumerate() {
-                    let row = place / usize::from(tile.width);
-                    let column = place % usize::from(tile.width);
-                    let Some(hit) = found.hits.get_mut(row * found.stride + column) else { continue };
-                    if ray([x, y]).is_some_and(|ray| self.replaces(&ray, index, *hit)) {
-                        *hit = index;
-                        found.nearness[(row * usize::from(SIDE) + column) % PIXELS] = 0;
-                        found.band = UNKNOWN;
-                        changed = true;
-                    }
-                }
+        for [x, y] in tile.places() {
+            let place = [x - tile.x, y - tile.y].map(usize::from);
+            let hit = found.hit(place);
+            if ray([x, y]).is_some_and(|ray| self.replaces(&ray, index, hit)) {
+                found.set(place, index, 0);
+                found.band = UNKNOWN;
+                changed = true;
             }
         }
         changed
     }
 
-    /// Whether a ray hits a primitive, nearer than another that it hits or that is [`NONE`].
+    /// Whether a ray hits a triangle, nearer than another that it hits or that is [`NONE`].
     #[inline(never)]
     fn replaces(&self, ray: &RayOf<P>, index: u32, other: u32) -> bool {
-        let depth = |index| self.primitive(index).and_then(|primitive| primitive.intersect(ray));
+        let depth = |index: u32| self.triangles.get(index as usize).and_then(|t| P::Kernel::intersect(ray, t));
         let Some(new) = depth(index) else { return false };
         depth(other).is_none_or(|old| self.nearer((index, &new), (other, &old)))
-    }
-
-    fn primitive(&self, index: u32) -> Option<Primitive<'_, P::Kernel>> {
-        match self.triangles.get(index as usize) {
-            Some(triangle) => Some(Primitive::Triangle(triangle)),
-            None if P::NEEDS.has(Need::Spheres) => self.sphere(index).map(|sphere| Primitive::Sphere(sphere, false)),
-            None => None,
-        }
     }
 }
 
 impl Found<'_> {
-    /// Nothing counts beyond what is nearest in every pixel.
+    /// Nothing counts beyond what is nearest in every pixel, where every pixel has something.
     #[inline(never)]
     fn limit<P: Profile>(&self, beam: &BeamOf<P>, tile: Tile) -> DistanceOf<P> {
         let rows = self.nearness.chunks(SIDE.into()).take(tile.height.into());
         let least = rows.flat_map(|row| row.iter().take(tile.width.into())).min().copied();
-        beam.limit(least.unwrap_or(NOWHERE) - self.band)
+        let least = i32::from(least.unwrap_or(NOWHERE)) - self.band;
+        beam.limit(least << self.shift.unwrap_or(0))
+    }
+
+    #[inline(always)]
+    fn hit(&self, [x, y]: [usize; 2]) -> u32 {
+        self.hits.get(y * self.stride + x).copied().unwrap_or(NONE)
+    }
+
+    #[inline(always)]
+    fn set(&mut self, [x, y]: [usize; 2], index: u32, nearness: i16) {
+        if let Some(hit) = self.hits.get_mut(y * self.stride + x) {
+            self.left -= usize::from(*hit == NONE);
+            *hit = index;
+        }
+        self.nearness[(y << SIDE_BITS | x) % PIXELS] = nearness;
+    }
+}
+
+/// A triangle that is put where it is the nearest.
+struct Drawing<'a, 'h, 'b, P: Profile, R> {
+    bvh: &'a Bvh<'b, P>,
+    ray: &'a R,
+    index: u32,
+    tile: Tile,
+    edges: &'a Edges,
+    /// By what the nearness of the triangle is shifted, and what a difference to another may be off.
+    shift: u32,
+    spread: i32,
+    found: &'a mut Found<'h>,
+    changed: bool,
+}
+
+impl<'a, 'h, 'b, P: Profile, R: Fn([u16; 2]) -> Option<RayOf<P>>> Drawing<'a, 'h, 'b, P, R> {
+    #[inline(always)]
+    fn new(
+        bvh: &'a Bvh<'b, P>,
+        edges: &'a Edges,
+        ray: &'a R,
+        tile: Tile,
+        index: u32,
+        found: &'a mut Found<'h>,
+    ) -> Self {
+        let shift = *found.shift.get_or_insert_with(|| {
+            let most = edges.nearness.most([i32::from(tile.width) - 1, i32::from(tile.height) - 1]) >> edges.shift;
+            most.max(0).unsigned_abs().bit_length().saturating_sub(NEARNESS_BITS)
+        });
+        let shift = (edges.shift + shift).min(31);
+        let band = (edges.band >> shift) + 2;
+        found.band = found.band.max(band);
+        let spread = found.band + band;
+        Self { bvh, ray, index, tile, edges, shift, spread, found, changed: false }
+    }
+
+    /// Goes through the tile by blocks.
+    #[inline(never)]
+    fn blocks(&mut self) {
+        let [a, b, c] = &self.edges.edges;
+        let most = |e: &crate::tile::Linear| (BLOCK - 1) * (e.right.max(0) + e.down.max(0));
+        let most = [most(a), most(b), most(c)];
+        let mut row = [a.first, b.first, c.first];
+        let (right, down) = ([a.right, b.right, c.right].map(|s| s * BLOCK), [a.down, b.down, c.down].map(|s| s * BLOCK));
+        let (width, height) = (i32::from(self.tile.width), i32::from(self.tile.height));
+        let mut y = 0;
+        while y < height {
+            let mut here = [row[0] + most[0], row[1] + most[1], row[2] + most[2]];
+            let mut x = 0;
+            while x < width {
+                if (here[0] | here[1] | here[2]) >= 0 {
+                    self.block([here[0] - most[0], here[1] - most[1], here[2] - most[2]], x, y);
+                }
+                here = [here[0] + right[0], here[1] + right[1], here[2] + right[2]];
+                x += BLOCK;
+            }
+            row = [row[0] + down[0], row[1] + down[1], row[2] + down[2]];
+            y += BLOCK;
+        }
+    }
+
+    #[inline(never)]
+    fn block(&mut self, first: Triple<i32>, x0: i32, y0: i32) {
+        let [a, b, c] = &self.edges.edges;
+        let (right, down) = ([a.right, b.right, c.right], [a.down, b.down, c.down]);
+        let mut row = first;
+        let (x_end, y_end) = (i32::from(self.tile.width).min(x0 + BLOCK), i32::from(self.tile.height).min(y0 + BLOCK));
+        let mut y = y0;
+        while y < y_end {
+            let [mut a, mut b, mut c] = row;
+            let mut x = x0;
+            while x < x_end {
+                if (a | b | c) >= 0 {
+                    let [p, q, r] = self.edges.certain;
+                    self.pixel(x, y, ((a - p) | (b - q) | (c - r)) >= 0);
+                }
+                (a, b, c) = (a + right[0], b + right[1], c + right[2]);
+                x += 1;
+            }
+            row = [row[0] + down[0], row[1] + down[1], row[2] + down[2]];
+            y += 1;
+        }
+    }
+
+    #[inline(always)]
+    fn pixel(&mut self, x: i32, y: i32, is_certain: bool) {
+        let nearness = self.edges.nearness(x, y) >> (self.shift & 31);
+        let place = [x as usize, y as usize];
+        let nearer = nearness - i32::from(self.found.nearness[(place[1] << SIDE_BITS | place[0]) % PIXELS]);
+        if nearer < -self.spread || (!(is_certain && nearer > self.spread) && !self.replaces(place)) {
+            return;
+        }
+        self.found.set(place, self.index, nearness.min(i16::MAX.into()) as i16);
+        self.changed = true;
+    }
+
+    #[inline(never)]
+    fn replaces(&self, place: [usize; 2]) -> bool {
+        let [x, y] = place.map(|c| c as u16);
+        let ray = (self.ray)([self.tile.x + x, self.tile.y + y]);
+        ray.is_some_and(|ray| self.bvh.replaces(&ray, self.index, self.found.hit(place)))
     }
 }

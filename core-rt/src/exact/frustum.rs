@@ -23,19 +23,29 @@ use crate::camera::Camera;
 use crate::kernel::Vertices;
 use crate::num::{Triple, Word, bits, cross, mantissa, reciprocal};
 use crate::render::Tile;
-use crate::tile::{Beam, Edges, Footprint, Linear};
+use crate::tile::{Beam, Edges, Footprint, Linear, SIDE};
 
 /// The bits of a direction's component, without those below the unit.
 const UNIT_BITS: u32 = 13;
 
-/// Fractional bits of directions, at most and at least.
-const FRACTION_BITS: [u32; 2] = [4, 8];
+/// Fractional bits of directions, at most, and what they must be at least.
+const FRACTION_BITS: i32 = 8;
+const FRACTION_BITS_MIN: i32 = 4;
+
+/// Bits of a vector that directions are multiplied by, where steps are short; fewer where they are long.
+const VECTOR_BITS: u32 = 16;
 
 /// Steps from pixel to pixel are below 2^13 in the last bit.
 const STEP_BITS: u32 = 13;
 
 /// Fractional bits of slopes, which are below 2.
 const SLOPE_BITS: u32 = 14;
+
+/// What rounding the middle direction and the steps from there to a pixel is off by at most, of the last bit.
+const STEP_ERROR: i32 = (1 + SIDE as i32 + 1) / 2;
+
+/// By how much a function's values may be low for rounding it and its steps down.
+const LINEAR_ERROR: i32 = 2 * SIDE as i32;
 
 /// The least component along the axis of depth, units.
 const DEPTH_MIN: i32 = 1 << 9;
@@ -74,6 +84,8 @@ pub struct Frustum<W: Width> {
     right: Triple<i32>,
     down: Triple<i32>,
     fraction_bits: u32,
+    /// The bits of a vector that directions are multiplied by.
+    vector_bits: u32,
     /// The last pixel.
     last: [i32; 2],
     /// By how much a component may be off, with the fractional bits.
@@ -127,28 +139,31 @@ fn rounded<T: Word>(value: T, shift: u32) -> i32 {
 
 impl<W: Width> Beam<Exact<W>> for Frustum<W> {
     fn new(camera: &Camera<W::Word>, tile: Tile) -> Option<Self> {
-        let (fraction, [first, right, down]) = camera.linear(tile.x, tile.y);
-        let [least, most] = FRACTION_BITS;
-        let cut = (fraction + Self::DROPPED_BITS) as i32 - most as i32;
-        let taken = |v: Triple<W::Word>| {
-            v.map(|c| if cut < 0 { c << cut.unsigned_abs() } else { c >> cut.unsigned_abs() }.low_i32())
-        };
-        let [first, right, down] = [taken(first), taken(right), taken(down)];
-        let above = bits(right).max(bits(down)).saturating_sub(STEP_BITS);
-        if above > most - least {
+        let [x, y] = [tile.width / 2, tile.height / 2];
+        let (fraction_bits, [middle, right, down]) = camera.linear(tile.x + x, tile.y + y);
+        let given = (fraction_bits + Self::DROPPED_BITS) as i32;
+        let step_bits = W::Word::common_bits(right.into_iter().chain(down));
+        let taken = FRACTION_BITS.min(given + STEP_BITS as i32 - step_bits as i32);
+        if taken < FRACTION_BITS_MIN {
             return None;
         }
-        let fraction_bits = most - above;
-        let first = first.map(|c| (c >> above) + i32::from(SIDE_LAST));
-        let [right, down] = [right, down].map(|step| step.map(|c| c >> above));
+        let fraction_bits = taken.unsigned_abs();
+        let [middle, right, down] = [middle, right, down].map(|v| {
+            v.map(|c| match given - taken {
+                cut @ 0.. => rounded(c, cut.unsigned_abs()),
+                cut => (c << cut.unsigned_abs()).low_i32(),
+            })
+        });
+        let [x, y] = [x, y].map(i32::from);
+        let first = [0, 1, 2].map(|axis| middle[axis] - x * right[axis] - y * down[axis]);
         let last = [i32::from(tile.width) - 1, i32::from(tile.height) - 1];
-        let spread = ((1 << fraction_bits) >> (Self::DROPPED_BITS + 1)) + 9;
+        let spread = ((1 << fraction_bits) >> (Self::DROPPED_BITS + 1)) + 1 + STEP_ERROR;
 
         // The corners, in quarters of a unit.
         let quarters = fraction_bits - 2;
         let corner = |x: i32, y: i32| [0, 1, 2].map(|axis| (first[axis] + x * right[axis] + y * down[axis]) >> quarters);
         let corners = [corner(0, 0), corner(last[0], 0), corner(0, last[1]), corner(last[0], last[1])];
-        let middle = [0, 1, 2].map(|axis| (corners[0][axis] + corners[3][axis]).abs());
+        let middle = middle.map(i32::abs);
         let axis = if middle[0] >= middle[1] && middle[0] >= middle[2] {
             0
         } else {
@@ -202,6 +217,7 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
             right,
             down,
             fraction_bits,
+            vector_bits: VECTOR_BITS - (FRACTION_BITS - taken).unsigned_abs() / 2,
             last,
             spread,
             length,
@@ -275,13 +291,13 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
         if volume == zero {
             return Footprint::Nothing;
         }
-        let shift = bits(a).max(bits(b)).max(bits(c)).saturating_sub(16);
+        let shift = W::Word::common_bits(a.into_iter().chain(b).chain(c)).saturating_sub(self.vector_bits);
         let mut edges = [Linear::default(); 3];
         let mut certain = [0; 3];
         for ((edge, certain), vector) in edges.iter_mut().zip(&mut certain).zip([a, b, c]) {
             let g = if volume < zero { vector.map(|c| -rounded(c, shift)) } else { vector.map(|c| rounded(c, shift)) };
             let linear = self.linear(g);
-            let band = self.off(g) + (self.length >> 1) + 17;
+            let band = self.off(g) + (self.length >> 1) + LINEAR_ERROR;
             *edge = Linear { first: linear.first + band, ..linear };
             if edge.most(self.last) < 0 {
                 return Footprint::Nothing;
@@ -290,10 +306,10 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
         }
         let (leading, length) = (if volume < zero { -volume } else { volume }).leading();
         let m = mantissa(leading) as i32;
-        let normal_shift = bits(normal).saturating_sub(15);
+        let normal_shift = W::Word::common_bits(normal).saturating_sub(15);
         let factor = if volume < zero { -m } else { m };
-        let towards = normal.map(|c| (rounded(c, normal_shift) * factor) >> 15);
-        let nearness_shift = length as i32 - normal_shift as i32 - Self::COARSE_BITS as i32 - NEARNESS_BITS as i32;
+        let towards = normal.map(|c| (rounded(c, normal_shift) * factor) >> (31 - self.vector_bits));
+        let nearness_shift = (length + self.vector_bits) as i32 - 16 - normal_shift as i32 - Self::COARSE_BITS as i32 - NEARNESS_BITS as i32;
         if !(1..32).contains(&nearness_shift) {
             return Footprint::Unknown;
         }
@@ -304,10 +320,7 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
             certain,
             nearness,
             shift: nearness_shift as u32,
-            band: (band >> nearness_shift) + 2,
+            band,
         })
     }
 }
-
-/// The last column and row of a tile, at most.
-const SIDE_LAST: u8 = crate::tile::SIDE as u8 - 1;
