@@ -29,7 +29,7 @@ pub trait Beam<K: Kernel>: Sized {
     /// Where the rays may enter a child of a node, 0 or 1, if one of them may before `limit`.
     fn enter<const AXIS: usize>(&self, node: &K::Node, child: usize, limit: K::Distance) -> Option<K::Distance>;
     /// What of the tile a triangle covers.
-    fn footprint(&self, vertices: &Vertices) -> Footprint;
+    fn footprint(&self, vertices: &Vertices, edges: &mut Edges) -> Footprint;
 }
 
 /// Of kernels that trace every ray by itself.
@@ -57,7 +57,7 @@ impl<K: Kernel> Beam<K> for NoBeam {
         match *self {}
     }
 
-    fn footprint(&self, _: &Vertices) -> Footprint {
+    fn footprint(&self, _: &Vertices, _: &mut Edges) -> Footprint {
         match *self {}
     }
 }
@@ -84,23 +84,23 @@ impl Linear {
 }
 
 /// What a triangle covers of a tile.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Footprint {
     /// Nothing.
     Nothing,
     /// Perhaps any pixel.
     Unknown,
-    /// By its edges.
-    Edges(Edges),
+    /// What its edges say.
+    Edges,
 }
 
 /// A triangle in the pixels of a tile.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Edges {
     /// One is negative where the ray certainly misses.
     pub edges: [Linear; 3],
     /// All are at least these where it certainly hits.
-    pub certain: [i32; 3],
+    pub uncertain: [i32; 3],
     /// The inverse of the depth, before it is shifted.
     pub nearness: Linear,
     /// By what it is shifted to the right.

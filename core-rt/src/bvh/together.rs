@@ -9,7 +9,7 @@ use crate::num::{BitLength, Triple};
 use crate::profile::Profile;
 use crate::render::Tile;
 use crate::stats::Stats;
-use crate::tile::{Beam, Edges, Footprint, SIDE};
+use crate::tile::{Beam, Edges, Footprint, Linear, SIDE};
 
 type BeamOf<P> = <<P as Profile>::Kernel as Kernel>::Beam;
 
@@ -90,26 +90,23 @@ impl<P: Profile> Bvh<'_, P> {
         }
         let mut found =
             Found { hits, stride, left: tile.pixels(), nearness: [NOWHERE; PIXELS], shift: None, band: 0 };
+        let mut edges = Edges::default();
         let mut limit = beam.reach();
         let mut next = Some(self.root);
         stack.clear();
         while let Some(leaf) = next.and_then(|child| self.entered(beam, child, limit, stack, stats)) {
             let Child::Leaf { first, count } = Child::unpack(leaf.get()) else { return };
-            let mut changed = false;
+            let left = found.left;
             for index in first..first + count {
                 let Some(triangle) = self.triangles.get(index as usize) else { continue };
                 stats.triangle();
-                match beam.footprint(&P::Kernel::vertices(triangle)) {
+                match beam.footprint(&P::Kernel::vertices(triangle), &mut edges) {
                     Footprint::Nothing => {}
-                    Footprint::Edges(edges) => {
-                        let mut drawing = Drawing::new(self, &edges, ray, tile, index, &mut found);
-                        drawing.blocks();
-                        changed |= drawing.changed;
-                    }
-                    Footprint::Unknown => changed |= self.try_all(ray, tile, index, &mut found),
+                    Footprint::Edges => Drawing::new(self, &edges, ray, tile, index, &mut found).draw(),
+                    Footprint::Unknown => self.try_all(ray, tile, index, &mut found),
                 }
             }
-            if changed && found.left == 0 && !stack.is_empty() {
+            if left != 0 && found.left == 0 {
                 limit = found.limit::<P>(beam, tile);
             }
             next = waiting::<P::Kernel>(stack, limit);
@@ -144,7 +141,7 @@ impl<P: Profile> Bvh<'_, P> {
         self.descend(child, limit, stack, stats, |node, child| beam.enter::<AXIS>(node, child, limit))
     }
 
-    /// Tests a triangle with every ray; whether it is the nearest anywhere.
+    /// Puts a triangle where it is the nearest, by testing every ray.
     #[inline(never)]
     fn try_all(
         &self,
@@ -152,18 +149,15 @@ impl<P: Profile> Bvh<'_, P> {
         tile: Tile,
         index: u32,
         found: &mut Found<'_>,
-    ) -> bool {
-        let mut changed = false;
+    ) {
         for [x, y] in tile.places() {
             let place = [x - tile.x, y - tile.y].map(usize::from);
             let hit = found.hit(place);
             if ray([x, y]).is_some_and(|ray| self.replaces(&ray, index, hit)) {
                 found.set(place, index, 0);
                 found.band = UNKNOWN;
-                changed = true;
             }
         }
-        changed
     }
 
     /// Whether a ray hits a triangle, nearer than another that it hits or that is [`NONE`].
@@ -211,7 +205,6 @@ struct Drawing<'a, 'h, 'b, P: Profile, R> {
     shift: u32,
     spread: i32,
     found: &'a mut Found<'h>,
-    changed: bool,
 }
 
 impl<'a, 'h, 'b, P: Profile, R: Fn([u16; 2]) -> Option<RayOf<P>>> Drawing<'a, 'h, 'b, P, R> {
@@ -232,39 +225,34 @@ impl<'a, 'h, 'b, P: Profile, R: Fn([u16; 2]) -> Option<RayOf<P>>> Drawing<'a, 'h
         let band = (edges.band >> shift) + 2;
         found.band = found.band.max(band);
         let spread = found.band + band;
-        Self { bvh, ray, index, tile, edges, shift, spread, found, changed: false }
+        Self { bvh, ray, index, tile, edges, shift, spread, found }
     }
 
     /// Goes through the tile by blocks.
     #[inline(never)]
-    fn blocks(&mut self) {
+    fn draw(&mut self) {
         let [a, b, c] = &self.edges.edges;
-        let most = |e: &crate::tile::Linear| (BLOCK - 1) * (e.right.max(0) + e.down.max(0));
-        let most = [most(a), most(b), most(c)];
-        let mut row = [a.first, b.first, c.first];
-        let (right, down) = ([a.right, b.right, c.right].map(|s| s * BLOCK), [a.down, b.down, c.down].map(|s| s * BLOCK));
-        let (width, height) = (i32::from(self.tile.width), i32::from(self.tile.height));
-        let mut y = 0;
-        while y < height {
-            let mut here = [row[0] + most[0], row[1] + most[1], row[2] + most[2]];
-            let mut x = 0;
-            while x < width {
-                if (here[0] | here[1] | here[2]) >= 0 {
-                    self.block([here[0] - most[0], here[1] - most[1], here[2] - most[2]], x, y);
-                }
-                here = [here[0] + right[0], here[1] + right[1], here[2] + right[2]];
-                x += BLOCK;
+        let most = |edge: &Linear| edge.first + (BLOCK - 1) * (edge.right.max(0) + edge.down.max(0));
+        let right = [a.right * BLOCK, b.right * BLOCK, c.right * BLOCK];
+        let down = [a.down * BLOCK, b.down * BLOCK, c.down * BLOCK];
+        let mut outside = outside([most(a), most(b), most(c)], right, down);
+        let mut block = 0;
+        while outside != ALL_OUTSIDE {
+            if outside >> 31 == 0 {
+                self.block(block & 3, block >> 2);
             }
-            row = [row[0] + down[0], row[1] + down[1], row[2] + down[2]];
-            y += BLOCK;
+            outside = outside << 1 | 1;
+            block += 1;
         }
     }
 
     #[inline(never)]
-    fn block(&mut self, first: Triple<i32>, x0: i32, y0: i32) {
+    fn block(&mut self, x: i32, y: i32) {
         let [a, b, c] = &self.edges.edges;
         let (right, down) = ([a.right, b.right, c.right], [a.down, b.down, c.down]);
-        let mut row = first;
+        let (x0, y0) = (x * BLOCK, y * BLOCK);
+        let start = |edge: &Linear| edge.first + x0 * edge.right + y0 * edge.down;
+        let mut row = [start(a), start(b), start(c)];
         let (x_end, y_end) = (i32::from(self.tile.width).min(x0 + BLOCK), i32::from(self.tile.height).min(y0 + BLOCK));
         let mut y = y0;
         while y < y_end {
@@ -272,7 +260,7 @@ impl<'a, 'h, 'b, P: Profile, R: Fn([u16; 2]) -> Option<RayOf<P>>> Drawing<'a, 'h
             let mut x = x0;
             while x < x_end {
                 if (a | b | c) >= 0 {
-                    let [p, q, r] = self.edges.certain;
+                    let [p, q, r] = self.edges.uncertain;
                     self.pixel(x, y, ((a - p) | (b - q) | (c - r)) >= 0);
                 }
                 (a, b, c) = (a + right[0], b + right[1], c + right[2]);
@@ -292,7 +280,6 @@ impl<'a, 'h, 'b, P: Profile, R: Fn([u16; 2]) -> Option<RayOf<P>>> Drawing<'a, 'h
             return;
         }
         self.found.set(place, self.index, nearness.min(i16::MAX.into()) as i16);
-        self.changed = true;
     }
 
     #[inline(never)]
@@ -301,4 +288,22 @@ impl<'a, 'h, 'b, P: Profile, R: Fn([u16; 2]) -> Option<RayOf<P>>> Drawing<'a, 'h
         let ray = (self.ray)([self.tile.x + x, self.tile.y + y]);
         ray.is_some_and(|ray| self.bvh.replaces(&ray, self.index, self.found.hit(place)))
     }
+}
+
+/// What [`outside`] says where nothing is inside, and behind the last place.
+const ALL_OUTSIDE: u32 = u32::MAX;
+
+/// Whether one of three functions is negative, in four rows of four places, from the highest bit down; the other bits are set.
+#[inline(never)]
+fn outside([mut a, mut b, mut c]: Triple<i32>, right: Triple<i32>, down: Triple<i32>) -> u32 {
+    let back = [down[0] - 4 * right[0], down[1] - 4 * right[1], down[2] - 4 * right[2]];
+    let mut outside = 0;
+    for _ in 0..4 {
+        for _ in 0..4 {
+            outside = outside << 1 | (a | b | c).cast_unsigned() >> 31;
+            (a, b, c) = (a + right[0], b + right[1], c + right[2]);
+        }
+        (a, b, c) = (a + back[0], b + back[1], c + back[2]);
+    }
+    outside << 16 | 0xffff
 }

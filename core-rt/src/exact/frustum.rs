@@ -21,7 +21,7 @@ use super::width::{Distance, Wide, Width};
 use super::Exact;
 use crate::camera::Camera;
 use crate::kernel::Vertices;
-use crate::num::{Triple, Word, bits, cross, mantissa, reciprocal};
+use crate::num::{Triple, Word, cross, mantissa, reciprocal};
 use crate::render::Tile;
 use crate::tile::{Beam, Edges, Footprint, Linear, SIDE};
 
@@ -278,7 +278,7 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
     }
 
     #[inline(never)]
-    fn footprint(&self, vertices: &Vertices) -> Footprint {
+    fn footprint(&self, vertices: &Vertices, edges: &mut Edges) -> Footprint {
         let [p, q, r] = vertices.map(|vertex| {
             let from = |axis: usize| W::Word::from_i32(vertex[axis]) - self.origin[axis];
             [from(0), from(1), from(2)]
@@ -291,36 +291,31 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
         if volume == zero {
             return Footprint::Nothing;
         }
+        let is_back = volume < zero;
         let shift = W::Word::common_bits(a.into_iter().chain(b).chain(c)).saturating_sub(self.vector_bits);
-        let mut edges = [Linear::default(); 3];
-        let mut certain = [0; 3];
-        for ((edge, certain), vector) in edges.iter_mut().zip(&mut certain).zip([a, b, c]) {
-            let g = if volume < zero { vector.map(|c| -rounded(c, shift)) } else { vector.map(|c| rounded(c, shift)) };
+        for (edge, vector) in [a, b, c].into_iter().enumerate() {
+            let g = if is_back { vector.map(|c| -rounded(c, shift)) } else { vector.map(|c| rounded(c, shift)) };
             let linear = self.linear(g);
             let band = self.off(g) + (self.length >> 1) + LINEAR_ERROR;
-            *edge = Linear { first: linear.first + band, ..linear };
-            if edge.most(self.last) < 0 {
+            let linear = Linear { first: linear.first + band, ..linear };
+            if linear.most(self.last) < 0 {
                 return Footprint::Nothing;
             }
-            *certain = 2 * band;
+            (edges.edges[edge], edges.uncertain[edge]) = (linear, 2 * band);
         }
-        let (leading, length) = (if volume < zero { -volume } else { volume }).leading();
+        let (leading, length) = (if is_back { -volume } else { volume }).leading();
         let m = mantissa(leading) as i32;
+        let factor = if is_back { -m } else { m };
         let normal_shift = W::Word::common_bits(normal).saturating_sub(15);
-        let factor = if volume < zero { -m } else { m };
         let towards = normal.map(|c| (rounded(c, normal_shift) * factor) >> (31 - self.vector_bits));
-        let nearness_shift = (length + self.vector_bits) as i32 - 16 - normal_shift as i32 - Self::COARSE_BITS as i32 - NEARNESS_BITS as i32;
+        let nearness_shift =
+            (length + self.vector_bits) as i32 - (16 + normal_shift + Self::COARSE_BITS + NEARNESS_BITS) as i32;
         if !(1..32).contains(&nearness_shift) {
             return Footprint::Unknown;
         }
-        let nearness = self.linear(towards);
-        let band = self.off(towards) + 6 * self.length;
-        Footprint::Edges(Edges {
-            edges,
-            certain,
-            nearness,
-            shift: nearness_shift as u32,
-            band,
-        })
+        edges.nearness = self.linear(towards);
+        edges.shift = nearness_shift as u32;
+        edges.band = self.off(towards) + 6 * self.length;
+        Footprint::Edges
     }
 }
