@@ -203,8 +203,10 @@ struct Drawing<'a, 'h, 'b, P: Profile, R> {
     edges: &'a Edges,
     /// By what the nearness of the triangle is shifted, and what a difference to another may be off.
     shift: u32,
+    band: i32,
     spread: i32,
     found: &'a mut Found<'h>,
+    changed: bool,
 }
 
 impl<'a, 'h, 'b, P: Profile, R: Fn([u16; 2]) -> Option<RayOf<P>>> Drawing<'a, 'h, 'b, P, R> {
@@ -223,14 +225,13 @@ impl<'a, 'h, 'b, P: Profile, R: Fn([u16; 2]) -> Option<RayOf<P>>> Drawing<'a, 'h
         });
         let shift = (edges.shift + shift).min(31);
         let band = (edges.band >> shift) + 2;
-        found.band = found.band.max(band);
         let spread = found.band + band;
-        Self { bvh, ray, index, tile, edges, shift, spread, found }
+        Self { bvh, ray, index, tile, edges, shift, band, spread, found, changed: false }
     }
 
     /// Goes through the tile by blocks.
     #[inline(never)]
-    fn draw(&mut self) {
+    fn draw(mut self) {
         let [a, b, c] = &self.edges.edges;
         let most = |edge: &Linear| edge.first + (BLOCK - 1) * (edge.right.max(0) + edge.down.max(0));
         let right = [a.right * BLOCK, b.right * BLOCK, c.right * BLOCK];
@@ -244,27 +245,33 @@ impl<'a, 'h, 'b, P: Profile, R: Fn([u16; 2]) -> Option<RayOf<P>>> Drawing<'a, 'h
             outside = outside << 1 | 1;
             block += 1;
         }
+        if self.changed {
+            self.found.band = self.found.band.max(self.band);
+        }
     }
 
-    #[inline(never)]
+    #[inline(always)]
     fn block(&mut self, x: i32, y: i32) {
         let [a, b, c] = &self.edges.edges;
         let (right, down) = ([a.right, b.right, c.right], [a.down, b.down, c.down]);
         let (x0, y0) = (x * BLOCK, y * BLOCK);
         let start = |edge: &Linear| edge.first + x0 * edge.right + y0 * edge.down;
         let mut row = [start(a), start(b), start(c)];
+        let most = right.map(|step| (BLOCK - 1) * step.max(0));
+        let [p, q, r] = self.edges.uncertain.map(|c| -c);
         let (x_end, y_end) = (i32::from(self.tile.width).min(x0 + BLOCK), i32::from(self.tile.height).min(y0 + BLOCK));
         let mut y = y0;
         while y < y_end {
             let [mut a, mut b, mut c] = row;
-            let mut x = x0;
-            while x < x_end {
-                if (a | b | c) >= 0 {
-                    let [p, q, r] = self.edges.uncertain;
-                    self.pixel(x, y, ((a - p) | (b - q) | (c - r)) >= 0);
+            if ((a + most[0]) | (b + most[1]) | (c + most[2])) >= 0 {
+                let mut x = x0;
+                while x < x_end {
+                    if (a | b | c) >= 0 {
+                        self.pixel(x, y, ((a + p) | (b + q) | (c + r)) >= 0);
+                    }
+                    (a, b, c) = (a + right[0], b + right[1], c + right[2]);
+                    x += 1;
                 }
-                (a, b, c) = (a + right[0], b + right[1], c + right[2]);
-                x += 1;
             }
             row = [row[0] + down[0], row[1] + down[1], row[2] + down[2]];
             y += 1;
@@ -280,6 +287,7 @@ impl<'a, 'h, 'b, P: Profile, R: Fn([u16; 2]) -> Option<RayOf<P>>> Drawing<'a, 'h
             return;
         }
         self.found.set(place, self.index, nearness.min(i16::MAX.into()) as i16);
+        self.changed = true;
     }
 
     #[inline(never)]
