@@ -1,7 +1,7 @@
 //! The albedo of a point: the material's, times its texture, times the colours of its vertices.
 
 use crate::colour::{Albedo, product};
-use crate::kernel::{Kernel, Surface};
+use crate::kernel::Surface;
 use crate::profile::{Need, Profile};
 use crate::record::Material;
 use crate::scene::Scene;
@@ -50,8 +50,7 @@ fn painted<P: Profile>(scene: &Scene<'_, P>, material: &Material, surface: &Surf
 /// What the texture says there; `None` where there is none, or the triangle does not say where.
 fn texel<P: Profile>(scene: &Scene<'_, P>, hit: u32, surface: &Surface<SpaceOf<P>>) -> Option<Albedo> {
     let paint = &scene.shading.paint;
-    let triangle = scene.bvh.triangles.get(hit as usize)?;
-    let texture = paint.textures.get(P::Kernel::material(triangle) as usize)?;
+    let texture = paint.textures.get(scene.bvh.triangles.material(hit)? as usize)?;
     let [a, b, c] = paint.uvs_of(hit)?;
     let blend = |a: i32, b: i32, c: i32| SpaceOf::<P>::blend([a, b, c], surface.u, surface.v);
     // A profile without it needs no look at the header.

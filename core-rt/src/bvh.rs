@@ -18,6 +18,7 @@ use heapless::VecView;
 
 use crate::camera::Camera;
 use crate::kernel::{ANY_OCTANT, Bounds, Kernel, NONE};
+use crate::mesh::Mesh;
 use crate::profile::{Need, Profile};
 use crate::render::Tile;
 use crate::section::Integers;
@@ -123,7 +124,7 @@ pub struct Bvh<'a, P: Profile> {
     /// Nodes in preorder.
     pub nodes: &'a [<P::Kernel as Kernel>::Node],
     /// Triangles in the order of the leaves.
-    pub triangles: &'a [<P::Kernel as Kernel>::Triangle],
+    pub triangles: Mesh<'a, P>,
     /// Spheres in the order of the leaves; none where the profile has none.
     pub spheres: &'a [<P::Kernel as Kernel>::Sphere],
     /// The id of each primitive: its index in the file.
@@ -138,14 +139,13 @@ impl<'a, P: Profile> Bvh<'a, P> {
         if !P::NEEDS.has(Need::Spheres) {
             return None;
         }
-        self.spheres.get((index as usize).checked_sub(self.triangles.len())?)
+        self.spheres.get(index.checked_sub(self.triangles.len())? as usize)
     }
 
     /// The boxes of all primitives, triangles first.
-    pub fn bounds(&self) -> impl Iterator<Item = Bounds> + 'a {
-        let triangles = self.triangles.iter().map(|triangle| Bounds::of(&P::Kernel::vertices(triangle)));
+    pub fn bounds(&self) -> impl Iterator<Item = Bounds> {
         let spheres = if P::NEEDS.has(Need::Spheres) { self.spheres } else { &[] };
-        triangles.chain(spheres.iter().map(|sphere| P::Kernel::ball(sphere).bounds()))
+        self.triangles.bounds().chain(spheres.iter().map(|sphere| P::Kernel::ball(sphere).bounds()))
     }
 
     /// Whether a hit is nearer than another: the smaller (t, id).
@@ -176,9 +176,9 @@ impl<'a, P: Profile> Bvh<'a, P> {
         while let Some(leaf) = next.and_then(|child| self.leaf(octant, path, child, limit, stack, stats)) {
             let Child::Leaf { first, count } = Child::unpack(leaf.get()) else { return };
             if P::NEEDS.has(Need::Spheres)
-                && let Some(first_sphere) = (first as usize).checked_sub(self.triangles.len())
+                && let Some(first_sphere) = first.checked_sub(self.triangles.len())
             {
-                let run = self.spheres.get(first_sphere..first_sphere + count as usize).unwrap_or_default();
+                let run = self.spheres.get(first_sphere as usize..(first_sphere + count) as usize).unwrap_or_default();
                 for (index, sphere) in (first..).zip(run) {
                     stats.sphere();
                     // A ray that starts on a sphere may meet it again, from inside.
@@ -187,9 +187,17 @@ impl<'a, P: Profile> Bvh<'a, P> {
                         None => return,
                     }
                 }
-            } else {
-                let run = self.triangles.get(first as usize..(first + count) as usize).unwrap_or_default();
-                for (index, triangle) in (first..).zip(run) {
+            } else if self.triangles.is_shared() {
+                for index in (first..first + count).filter(|&index| index != skip) {
+                    stats.triangle();
+                    let Some(triangle) = self.triangles.assemble(index) else { return };
+                    match visit(index, Primitive::Triangle(&triangle)) {
+                        Some(nearer) => limit = nearer,
+                        None => return,
+                    }
+                }
+            } else if P::NEEDS.has(Need::WholeTriangles) {
+                for (index, triangle) in (first..).zip(self.triangles.run(first, count)) {
                     if index != skip {
                         stats.triangle();
                         match visit(index, Primitive::Triangle(triangle)) {

@@ -126,6 +126,8 @@ pub trait Kernel: Copy + Debug + Default + Send + Sync + 'static {
     type Node: Record;
     /// A triangle.
     type Triangle: Record;
+    /// A vertex that triangles share.
+    type Vertex: Record;
     /// A sphere.
     type Sphere: Record;
     /// A ray.
@@ -155,6 +157,15 @@ pub trait Kernel: Copy + Debug + Default + Send + Sync + 'static {
     fn triangle(settings: Self::Settings, vertices: &Vertices, material: u32) -> Option<Self::Triangle>;
     /// The corners of a triangle; of a record that [`Kernel::triangle`] did not make, whatever it says.
     fn vertices(triangle: &Self::Triangle) -> Vertices;
+    /// The record of a vertex on the grid.
+    fn vertex(place: Triple<i32>) -> Self::Vertex;
+    /// The place of a vertex.
+    fn place(vertex: &Self::Vertex) -> Triple<i32>;
+    /// The record of a triangle of which [`Kernel::triangle`] makes one, with material 0; of another `None`, or whatever.
+    #[inline]
+    fn assemble(settings: Self::Settings, vertices: [&Self::Vertex; 3]) -> Option<Self::Triangle> {
+        Self::triangle(settings, &vertices.map(Self::place), 0)
+    }
     /// The material of a triangle.
     fn material(triangle: &Self::Triangle) -> u32;
     /// The record of a sphere; `None` where it does not fit ([`Ball::fits`]) or the material is too high.

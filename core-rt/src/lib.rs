@@ -15,8 +15,8 @@
 //! scene.
 //!
 //! # Tracing
-//! [`camera`] rays go through the [`bvh`], a [`tile`] at a time, hits are shaded, and [`render`] brings tiles to a sink. A
-//! [`profile`] says what is compiled in; [`stats`] count the work.
+//! [`camera`] rays go through the [`bvh`] to the triangles of a [`mesh`], a [`tile`] at a time, hits are shaded, and
+//! [`render`] brings tiles to a sink. A [`profile`] says what is compiled in; [`stats`] count the work.
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -31,6 +31,7 @@ pub mod format;
 pub mod hanika;
 pub mod kernel;
 mod light;
+pub mod mesh;
 pub mod num;
 pub mod paint;
 pub mod profile;

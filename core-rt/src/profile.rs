@@ -12,7 +12,7 @@ use crate::kernel::Kernel;
 
 /// One thing that a scene may need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u32)]
+#[repr(u64)]
 pub enum Need {
     /// Point lights.
     PointLight = 1,
@@ -72,11 +72,15 @@ pub enum Need {
     Gray8 = 1 << 27,
     /// Reflections that grow towards grazing angles.
     Schlick = 1 << 28,
+    /// Triangles with a record each.
+    WholeTriangles = 1 << 29,
+    /// Triangles that share vertices.
+    SharedVertices = 1 << 31,
 }
 
 impl Need {
     /// All of them.
-    pub const ALL: [Self; 29] = [
+    pub const ALL: [Self; 31] = [
         Self::PointLight,
         Self::DirectionalLight,
         Self::Shadows,
@@ -106,6 +110,8 @@ impl Need {
         Self::Rgb565,
         Self::Gray8,
         Self::Schlick,
+        Self::WholeTriangles,
+        Self::SharedVertices,
     ];
 }
 
@@ -141,36 +147,45 @@ impl Display for Need {
             Self::Rgb565 => "RGB565 output",
             Self::Gray8 => "gray output",
             Self::Schlick => "reflections after Schlick",
+            Self::WholeTriangles => "triangles with records",
+            Self::SharedVertices => "shared vertices",
         })
     }
 }
 
 /// A set of needs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Needs(u32);
+pub struct Needs(u64);
 
 impl Needs {
     /// None.
     pub const NONE: Self = Self(0);
     /// All.
-    pub const ALL: Self = Self((1 << Need::ALL.len()) - 1);
+    pub const ALL: Self = {
+        let (mut all, mut place) = (Self::NONE, 0);
+        while place < Need::ALL.len() {
+            all = all.with(Need::ALL[place], true);
+            place += 1;
+        }
+        all
+    };
 
     /// From the bits of a header.
     #[must_use]
-    pub const fn from_bits(bits: u32) -> Self {
+    pub const fn from_bits(bits: u64) -> Self {
         Self(bits)
     }
 
     /// As a header has them.
     #[must_use]
-    pub const fn bits(self) -> u32 {
+    pub const fn bits(self) -> u64 {
         self.0
     }
 
     /// Whether a need is in the set.
     #[must_use]
     pub const fn has(self, need: Need) -> bool {
-        self.0 & need as u32 != 0
+        self.0 & need as u64 != 0
     }
 
     /// Whether every need in the set is one of [`Need::ALL`].
@@ -182,7 +197,7 @@ impl Needs {
     /// The set with a need added, if `wanted`.
     #[must_use]
     pub const fn with(self, need: Need, wanted: bool) -> Self {
-        if wanted { Self(self.0 | need as u32) } else { self }
+        if wanted { Self(self.0 | need as u64) } else { self }
     }
 
     /// The first need that `self` has and `other` lacks.

@@ -6,6 +6,7 @@ use crate::camera::{Camera, Use};
 use crate::colour::{Radiance, Transfer};
 use crate::format::Format;
 use crate::kernel::{Kernel, NONE};
+use crate::mesh::Mesh;
 use crate::paint::Paint;
 use crate::profile::{Need, Needs, Profile};
 use crate::record::{Checker, Light, Lustre, Material};
@@ -107,7 +108,16 @@ impl<'a, P: Profile> Scene<'a, P> {
     /// # Errors
     /// Whatever is wrong with it; see [`BlobError`].
     pub fn new_checked(bytes: &'a [u8]) -> Result<Self, BlobError> {
-        let (header, sections) = open(bytes, P::Kernel::ID)?;
+        // Matched by reference here and below: neither a header nor a scene is small, and the stack would have them twice.
+        match &open(bytes, P::Kernel::ID) {
+            Ok((header, sections)) => Self::checked(header, sections),
+            Err(error) => Err(*error),
+        }
+    }
+
+    // Out of line, so that what takes the header apart is not on the stack any more.
+    #[inline(never)]
+    fn checked(header: &Header, sections: &'a [u8]) -> Result<Self, BlobError> {
         // A need that this version does not know cannot be met, nor named.
         if !header.needs.is_known()
             || usize::from(header.depth) > MAX_DEPTH
@@ -119,17 +129,19 @@ impl<'a, P: Profile> Scene<'a, P> {
         if let Some(need) = header.needs.first_missing_in(P::NEEDS) {
             return Err(BlobError::Missing(need));
         }
+        let scene = Self::view(header, sections);
+        check::all(header, scene.as_ref().map_err(|error| *error)?)?;
+        scene
+    }
+
+    /// The scene, not checked, if the sections fill the body exactly and agree with each other.
+    // Out of line, so that what it takes is not on the stack while the scene is checked.
+    #[inline(never)]
+    fn view(header: &Header, sections: &'a [u8]) -> Result<Self, BlobError> {
         let settings = P::Kernel::settings(&header.arithmetic).ok_or(BlobError::Header)?;
-        let camera = camera::<P::Kernel>(&header, header.camera_use(P::NEEDS)).ok_or(BlobError::Header)?;
-        let (bvh, shading) = view::<P>(&header, sections).ok_or(BlobError::Sections)?;
-        let starts_within =
-            |whole: &_| header.camera.starts_within(header.camera_use(P::NEEDS), whole, P::Kernel::SPAN);
-        check::tree(&header, &bvh)?;
-        check::contents(&header, settings, starts_within, &bvh, &shading)?;
-        if P::NEEDS.paint() {
-            shading.paint.check(header.counts.triangles)?;
-        }
-        Ok(Self { frame: Frame::of(&header), settings, camera, bvh, shading })
+        let camera = camera::<P::Kernel>(header, header.camera_use(P::NEEDS)).ok_or(BlobError::Header)?;
+        let (bvh, shading) = geometry::<P>(header, settings, sections).ok_or(BlobError::Sections)?;
+        Ok(Self { frame: Frame::of(header), settings, camera, bvh, shading })
     }
 
     /// All that the header of a blob for this kernel says; what is not the header is not checked.
@@ -183,14 +195,23 @@ fn camera<K: Kernel>(header: &Header, used: Use) -> Option<Camera<K::Word>> {
 }
 
 /// Geometry, and everything else.
-type View<'a, P> = (Bvh<'a, P>, Shading<'a, <P as Profile>::Kernel>);
+type Geometry<'a, P> = (Bvh<'a, P>, Shading<'a, <P as Profile>::Kernel>);
 
 /// The sections, if they fill the body exactly and agree with each other.
-fn view<'a, P: Profile>(header: &Header, sections: &'a [u8]) -> Option<View<'a, P>> {
+#[inline(always)]
+fn geometry<'a, P: Profile>(
+    header: &Header,
+    settings: <P::Kernel as Kernel>::Settings,
+    sections: &'a [u8],
+) -> Option<Geometry<'a, P>> {
     let counts = &header.counts;
     let smooth = header.needs.has(Need::SmoothNormals);
+    let (whole, shared) = (header.needs.has(Need::WholeTriangles), header.needs.has(Need::SharedVertices));
     let primitives = counts.triangles.checked_add(counts.spheres)?;
     let consistent = primitives > 0
+        && !(whole && shared)
+        && (whole || shared) == (counts.triangles > 0)
+        && shared == (counts.vertices > 0)
         && header.needs.has(Need::Spheres) == (counts.spheres > 0)
         && counts.smooth == if smooth { counts.triangles } else { 0 }
         && smooth == (counts.normals > 0);
@@ -198,10 +219,19 @@ fn view<'a, P: Profile>(header: &Header, sections: &'a [u8]) -> Option<View<'a, 
         return None;
     }
     let mut reader = Reader { bytes: sections };
+    let nodes = reader.records(counts.nodes)?;
+    let [with_record, with_corners] = [whole, shared].map(|is_so| if is_so { counts.triangles } else { 0 });
     let bvh = Bvh {
         root: header.root,
-        nodes: reader.records(counts.nodes)?,
-        triangles: reader.records(counts.triangles)?,
+        nodes,
+        triangles: Mesh {
+            settings,
+            records: reader.records(with_record)?,
+            corners: reader.integers(with_corners.checked_mul(3)?, counts.vertices > 1 << 16)?,
+            vertices: reader.records(counts.vertices)?,
+            materials: reader
+                .integers(if counts.materials > 1 { with_corners } else { 0 }, counts.materials > 1 << 16)?,
+        },
         // What the profile lacks the scene was found not to need, and then there are none.
         spheres: if P::NEEDS.has(Need::Spheres) { reader.records(counts.spheres)? } else { &[] },
         ids: reader.integers(primitives, header.needs.has(Need::WideIds))?,

@@ -17,6 +17,9 @@ pub enum Integers<'a> {
 }
 
 impl Integers<'_> {
+    /// No integers.
+    pub const NONE: Self = Self::Narrow(&[]);
+
     /// The integer at `index`; past the end the largest one, so that no access fails.
     #[inline]
     #[must_use]

@@ -119,7 +119,7 @@ fn smooth<P: Profile>(scene: &Scene<'_, P>, hit: u32, surface: &Surface<SpaceOf<
         return None;
     }
     // There is none for a sphere.
-    let triangle = scene.bvh.triangles.get(hit as usize)?;
+    let vertices = scene.bvh.triangles.vertices(hit)?;
     let mut normals = scene.shading.normals(hit)?;
     let mut normal = SpaceOf::<P>::interpolate(normals, surface.u, surface.v)?;
     if !SpaceOf::<P>::aligned(normal, surface.normal) {
@@ -129,7 +129,7 @@ fn smooth<P: Profile>(scene: &Scene<'_, P>, hit: u32, surface: &Surface<SpaceOf<
     let mut lifted = surface.point;
     // A triangle with a normal far off its own is creased, and no part of a smooth surface.
     if P::NEEDS.has(Need::Shadows) && normals.iter().all(|&normal| SpaceOf::<P>::near(normal, surface.normal)) {
-        let corners = P::Kernel::vertices(triangle).map(SpaceOf::<P>::point);
+        let corners = vertices.map(SpaceOf::<P>::point);
         let (low, high) = (P::Kernel::MARGIN, (1 << P::Kernel::GRID_BITS) - 1 - P::Kernel::MARGIN);
         let range = [low, high].map(|c| SpaceOf::<P>::point([c; 3]));
         lifted = SpaceOf::<P>::lift(lifted, corners, normals, [surface.u, surface.v], range);
@@ -144,7 +144,7 @@ impl<'a, P: Profile> Scene<'a, P> {
         let material = self.material(hit)?;
         let surface = match self.bvh.sphere(hit) {
             Some(sphere) => P::Kernel::resolve_sphere(ray, sphere),
-            None => P::Kernel::resolve(ray, self.bvh.triangles.get(hit as usize)?),
+            None => P::Kernel::resolve(ray, &self.bvh.triangles.get(hit)?),
         };
         Some((surface, material))
     }
@@ -157,7 +157,7 @@ impl<'a, P: Profile> Scene<'a, P> {
         }
         let number = match self.bvh.sphere(hit) {
             Some(sphere) => P::Kernel::sphere_material(sphere),
-            None => P::Kernel::material(self.bvh.triangles.get(hit as usize)?),
+            None => self.bvh.triangles.material(hit)?,
         };
         self.shading.materials.get(number as usize)
     }

@@ -34,7 +34,7 @@ pub struct Traits {
     /// [`Kernel::ID`].
     pub kernel: u16,
     /// The bits of the header's needs.
-    pub needs: u32,
+    pub needs: u64,
     /// Levels of a tree, a multiple of 16, so that scenes share firmware.
     pub depth: usize,
     /// Rays of a pixel that may wait: none, or a multiple of 4.

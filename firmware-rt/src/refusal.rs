@@ -68,5 +68,7 @@ fn name(need: Need) -> defmt::Str {
         Need::Rgb565 => defmt::intern!("RGB565 output"),
         Need::Gray8 => defmt::intern!("gray output"),
         Need::Schlick => defmt::intern!("reflections after Schlick"),
+        Need::WholeTriangles => defmt::intern!("triangles with records"),
+        Need::SharedVertices => defmt::intern!("shared vertices"),
     }
 }

@@ -42,6 +42,7 @@ impl<F: Format> Kernel for Float<F> {
     type Word = i64;
     type Node = F::Node;
     type Triangle = F::Triangle;
+    type Vertex = Triple<i32>;
     type Sphere = F::Sphere;
     type Ray = Ray<F>;
     type Path = Path<F>;
@@ -76,6 +77,14 @@ impl<F: Format> Kernel for Float<F> {
 
     fn vertices(triangle: &F::Triangle) -> Vertices {
         triangle::vertices::<F>(triangle)
+    }
+
+    fn vertex(place: Triple<i32>) -> Triple<i32> {
+        place
+    }
+
+    fn place(vertex: &Triple<i32>) -> Triple<i32> {
+        *vertex
     }
 
     #[inline]

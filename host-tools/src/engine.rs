@@ -118,7 +118,7 @@ impl<K: Measure + std::fmt::Debug> Engine for Of<K> {
         let scene = Scene::<Full<K>>::new_checked(blob)?;
         let sizes = Sizes {
             nodes: size_of_val(scene.bvh.nodes) as u64,
-            triangles: size_of_val(scene.bvh.triangles) as u64,
+            triangles: scene.bvh.triangles.bytes() as u64,
             spheres: size_of_val(scene.bvh.spheres) as u64,
             ids: scene.bvh.ids.size() as u64,
             normals: (size_of_val(scene.shading.normals) + scene.shading.normal_indices.size()) as u64,

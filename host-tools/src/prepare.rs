@@ -9,11 +9,14 @@ mod layout;
 mod loss;
 mod lustre;
 mod paint;
+mod shared;
 mod survey;
 
 pub use layout::Blob;
 pub use loss::{Keeper, Loss, losses};
 pub use paint::unplaced;
+
+use shared::Shared;
 
 use core_rt::arithmetic::Knobs;
 use core_rt::bvh::Child;
@@ -38,6 +41,18 @@ pub struct Options {
     pub grid_bits: Option<u32>,
     /// How texels are stored; `None` for the way that suits the output.
     pub texels: Option<Texels>,
+    /// How triangles are stored.
+    pub prefer: Prefer,
+}
+
+/// How triangles are stored, by what a chip has less of. The tree is the same, and so are pictures.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Prefer {
+    /// Time: a record each, with all that its test wants.
+    #[default]
+    Speed,
+    /// Flash: corners among shared vertices, of which records are made whenever they are tested.
+    Size,
 }
 
 /// Why a scene cannot be prepared for a kernel.
@@ -198,10 +213,10 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
     let refused = PrepareError::Knobs { ranges: K::KNOBS, kernel: K::NAME };
     let arithmetic = K::settle(&options.knobs, ids.iter().map(|&id| snapped.corners(id))).ok_or(refused)?;
     let settings = K::settings(&arithmetic).ok_or(refused)?;
+    let number = |&id: &u32| materials[model.triangles[id as usize].material as usize];
     // Corners are on the grid and have area, and materials were counted: `triangle` has no reason left to refuse.
     let triangle = |&id: &u32| {
-        let material = materials[model.triangles[id as usize].material as usize];
-        K::triangle(settings, &snapped.corners(id), material).expect("a triangle that the grid and the kernel hold")
+        K::triangle(settings, &snapped.corners(id), number(&id)).expect("a triangle that the grid and the kernel hold")
     };
     // What does not fit is not among `balls`.
     let sphere = |&(number, ball): &(u32, Ball)| {
@@ -219,6 +234,11 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
             header::material(material, lustre, shared(&mut checkers, header::checker(material, &grid)))
         })
         .collect();
+    let share = || Shared::of(ids.iter().map(|&id| (snapped.corners(id), number(&id))));
+    let shared = (options.prefer == Prefer::Size).then(share);
+    // A few triangles that share nothing are smaller as they are.
+    let shared = shared.filter(|shared| shared.bytes::<K>(used.len()) < ids.len() * size_of::<K::Triangle>());
+    let with_record = if shared.is_some() { [].as_slice() } else { &ids };
     let blob = layout::write::<K>(
         model,
         &grid,
@@ -227,7 +247,8 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
             depth,
             arithmetic,
             nodes: nodes.iter().map(|node| K::node(node.boxes, node.children)),
-            triangles: ids.iter().map(triangle),
+            triangles: with_record.iter().map(triangle),
+            shared,
             spheres: balls.iter().map(sphere),
             ids: &ids,
             sphere_ids: &sphere_ids,

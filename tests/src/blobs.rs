@@ -12,7 +12,7 @@ use core_rt::stats::Counts;
 use core_rt::texture::{Texture, Uv};
 use host_tools::import::{Embedded, load_from};
 use host_tools::pixels::rgb888;
-use host_tools::prepare::{Blob, Options, prepare};
+use host_tools::prepare::{Blob, Options, Prefer, prepare};
 use host_tools::tree::TreeOptions;
 use zerocopy::{FromBytes, IntoBytes};
 
@@ -25,6 +25,12 @@ pub struct Draft<K: Kernel> {
     pub nodes: Vec<K::Node>,
     /// Triangles in the order of the leaves.
     pub triangles: Vec<K::Triangle>,
+    /// Three vertices a triangle that has no record.
+    pub corners: Vec<u32>,
+    /// The vertices that these refer to.
+    pub vertices: Vec<K::Vertex>,
+    /// The material of each triangle that has no record, where there are several.
+    pub numbers: Vec<u32>,
     /// Spheres in the order of the leaves.
     pub spheres: Vec<K::Sphere>,
     /// The file's number of each triangle, then of each sphere.
@@ -76,7 +82,14 @@ impl<K: Kernel> Draft<K> {
         Some(Self {
             header,
             nodes: take(&mut rest, counts.nodes)?,
-            triangles: take(&mut rest, counts.triangles)?,
+            triangles: take(&mut rest, if_needed(Need::WholeTriangles, counts.triangles))?,
+            corners: take_integers(&mut rest, corners(Need::SharedVertices)?, counts.vertices > 1 << 16)?,
+            vertices: take(&mut rest, counts.vertices)?,
+            numbers: take_integers(
+                &mut rest,
+                if counts.materials > 1 { if_needed(Need::SharedVertices, counts.triangles) } else { 0 },
+                counts.materials > 1 << 16,
+            )?,
             spheres: take(&mut rest, counts.spheres)?,
             ids: take_integers(&mut rest, counts.triangles.checked_add(counts.spheres)?, needs.has(Need::WideIds))?,
             normal_indices: take_integers(&mut rest, counts.smooth.checked_mul(3)?, needs.has(Need::WideNormals))?,
@@ -103,6 +116,9 @@ impl<K: Kernel> Draft<K> {
         put(&mut bytes, &header);
         put(&mut bytes, &self.nodes);
         put(&mut bytes, &self.triangles);
+        put_integers(&mut bytes, &self.corners, self.header.counts.vertices > 1 << 16);
+        put(&mut bytes, &self.vertices);
+        put_integers(&mut bytes, &self.numbers, self.header.counts.materials > 1 << 16);
         put(&mut bytes, &self.spheres);
         put_integers(&mut bytes, &self.ids, self.header.needs.has(Need::WideIds));
         put_integers(&mut bytes, &self.normal_indices, self.header.needs.has(Need::WideNormals));
@@ -174,7 +190,16 @@ pub fn repaired(bytes: &[u8], kernel: u16) -> Blob {
 /// Where it cannot be prepared.
 #[must_use]
 pub fn sample<K: Kernel>(smooth: bool) -> Blob {
-    prepared_sample::<K>(smooth, "")
+    prepared_sample::<K>(smooth, "", Prefer::Speed)
+}
+
+/// [`sample`] with triangles that share vertices.
+///
+/// # Panics
+/// Where it cannot be prepared.
+#[must_use]
+pub fn sample_with_shared_vertices<K: Kernel>(smooth: bool) -> Blob {
+    prepared_sample::<K>(smooth, "", Prefer::Size)
 }
 
 /// [`sample`], smooth, with three spheres among its triangles, one of which reaches all ends of the scene.
@@ -186,10 +211,10 @@ pub fn sample_with_spheres<K: Kernel>() -> Blob {
     const SPHERES: &str = "[[sphere]]\ncentre = [2, 2, 2]\nradius = 2\nmaterial = 'floor'\n\
                            [[sphere]]\ncentre = [1, 1, 3]\nradius = 0.5\nmaterial = 'lamp'\n\
                            [[sphere]]\ncentre = [3, 1, 3]\nradius = 0.5\nmaterial = 'floor'\n";
-    prepared_sample::<K>(true, SPHERES)
+    prepared_sample::<K>(true, SPHERES, Prefer::Speed)
 }
 
-fn prepared_sample<K: Kernel>(smooth: bool, spheres: &str) -> Blob {
+fn prepared_sample<K: Kernel>(smooth: bool, spheres: &str, prefer: Prefer) -> Blob {
     const VERTICES: &str = "mtllib s.mtl\nv 0 0 0\nv 4 0 0\nv 4 0 4\nv 0 0 4\nv 1 1 1\nv 3 1 2\nv 2 3 2\nv 2 1 3\n\
                             vn 0 1 0\nvn 1 1 0\nvn 0 1 1\n";
     const SCENE: &str = "model = 's.obj'\n[camera]\nposition = [1, 3, 8]\nlook_at = [2, 1, 2]\n[[light]]\nposition = [3, 5, 3]\n\
@@ -207,7 +232,7 @@ fn prepared_sample<K: Kernel>(smooth: bool, spheres: &str) -> Blob {
     ];
     let model = load_from(&Embedded(&files), "s.toml").expect("a good scene").model;
     let tree = TreeOptions { leaf_max: 1, leaf_always: true, ..TreeOptions::default() };
-    prepare::<K>(&model, &Options { tree, ..Options::default() }).expect("it fits every kernel").blob
+    prepare::<K>(&model, &Options { tree, prefer, ..Options::default() }).expect("it fits every kernel").blob
 }
 
 /// Renders the first tile of an accepted scene and the last, of at most 8x8 pixels, and returns the pixels of both.
@@ -231,7 +256,7 @@ pub fn corners<K: Kernel>(scene: &Scene<'_, Full<K>>) -> Vec<Rgb888> {
             render_tile(scene, tile, &mut workspace, &mut counts).expect("the workspace is the largest there is");
         seen.extend(rgb888(scene.frame.format, pixels));
         let nodes = scene.bvh.nodes.len() as u64;
-        let primitives = (scene.bvh.triangles.len() + scene.bvh.spheres.len()) as u64;
+        let primitives = u64::from(scene.bvh.triangles.len()) + scene.bvh.spheres.len() as u64;
         assert!(counts.box_tests <= 2 * nodes * counts.rays(), "{counts:?} of {nodes} nodes");
         assert!(counts.triangle_tests <= primitives * counts.rays(), "{counts:?} of {primitives} primitives");
     }

@@ -4,6 +4,7 @@
 use core_rt::bvh::{Bvh, Intersect};
 use core_rt::exact::{Exact, Ray, Width, Width14, Width20, Width29, Width29In};
 use core_rt::kernel::{Kernel, NONE, Vertices};
+use core_rt::mesh::Mesh;
 use core_rt::num::Word;
 use core_rt::profile::Full;
 use core_rt::scene::MAX_DEPTH;
@@ -51,7 +52,7 @@ where
         Bvh {
             root: self.root,
             nodes: &self.nodes,
-            triangles: &self.triangles,
+            triangles: Mesh::whole((), &self.triangles),
             spheres: &[],
             ids: Integers::Wide(&self.ids),
         }

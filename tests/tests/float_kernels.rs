@@ -4,6 +4,7 @@
 use core_rt::blob::BlobError;
 use core_rt::bvh::{Bvh, Intersect};
 use core_rt::kernel::{Bounds, Kernel, NONE, Vertices};
+use core_rt::mesh::Mesh;
 use core_rt::profile::Full;
 use core_rt::scene::{MAX_DEPTH, Scene};
 use core_rt::section::Integers;
@@ -131,7 +132,13 @@ fn trace<F: Format + Into<f64>>(corners: &[Vertices], rays: &[Ray], shrink: i32)
     let triangle = |&i: &u32| Float::<F>::triangle((), &corners[i as usize], 0).expect("on the grid, with area");
     let triangles: Vec<_> = built.order.iter().map(triangle).collect();
     let ids = Integers::Wide(&built.order);
-    let bvh = Bvh::<Full<Float<F>>> { root: built.root, nodes: &nodes, triangles: &triangles, spheres: &[], ids };
+    let bvh = Bvh::<Full<Float<F>>> {
+        root: built.root,
+        nodes: &nodes,
+        triangles: Mesh::whole((), &triangles),
+        spheres: &[],
+        ids,
+    };
     let oracle = Oracle::new(&corners.iter().map(|t| t.map(|v| v.map(i64::from))).collect::<Vec<_>>());
     let outcome = |(ray, exact): (&Ray, Option<Nearest>)| {
         let ray = Float::<F>::ray((), ray.origin, ray.direction, NONE).expect("no direction is zero");

@@ -65,7 +65,7 @@ fn the_refinement_is_never_worse_and_the_conservative_box_neither() {
 /// The nearest hit over all triangles and spheres, by the kernel's own tests and in its own order.
 fn brute<K: Kernel>(scene: &Scene<'_, Full<K>>, ray: &K::Ray) -> u32 {
     let (bvh, skip) = (&scene.bvh, K::skip(ray));
-    let triangles = (0..).zip(bvh.triangles).filter(|(index, _)| *index != skip);
+    let triangles = (0..).zip(bvh.triangles.records).filter(|(index, _)| *index != skip);
     let triangles = triangles.map(|(index, triangle)| (index, K::intersect(ray, triangle)));
     let spheres = (bvh.triangles.len() as u32..).zip(bvh.spheres);
     let spheres = spheres.map(|(index, sphere)| (index, K::intersect_sphere(ray, sphere, index == skip)));

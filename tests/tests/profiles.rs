@@ -9,7 +9,7 @@ use core_rt::hanika::HanikaC;
 use core_rt::kernel::Kernel;
 use core_rt::profile::{Full, Needs, Profile};
 use core_rt::scene::Scene;
-use host_tools::prepare::{Options, prepare};
+use host_tools::prepare::{Options, Prefer, prepare};
 use host_tools::render::render;
 use host_tools::stress::cases;
 use tests::scenes;
@@ -32,42 +32,55 @@ fn picture<P: Profile>(blob: &[u8]) -> Option<u32> {
     }
 }
 
-/// The pictures without each need.
-macro_rules! without_each {
-    ($kernel:ty, $blob:expr, $($bit:literal)*) => { [$(picture::<Without<$kernel, $bit>>($blob)),*] };
+/// The bits, and the pictures without each need.
+macro_rules! needs {
+    ($($bit:literal)*) => {
+        const BITS: &[u32] = &[$($bit),*];
+
+        fn without_each<K: Kernel>(blob: &[u8]) -> [Option<u32>; BITS.len()] {
+            [$(picture::<Without<K, $bit>>(blob)),*]
+        }
+    };
 }
+needs!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 31);
 
 /// Under how many profiles each bit's absence was no hindrance, over all scenes.
-fn check<K: Kernel>(pictures: impl Fn(&[u8]) -> [Option<u32>; 29]) {
-    assert_eq!(Needs::ALL.bits(), (1 << 29) - 1, "a new need is to be tried too");
-    let mut tried = [0; 29];
+fn check<K: Kernel>() {
+    assert_eq!(Needs::ALL.bits(), BITS.iter().fold(0, |all, bit| all | 1 << bit), "a new need is to be tried too");
+    let (mut tried, mut shared) = ([0; BITS.len()], 0);
     let of_cases = cases::all().into_iter().filter(|case| matches!(case.name, "ior-10" | "hall-of-mirrors"));
     let of_cases = of_cases.map(|case| (case.name, (case.subject)().model));
     for (name, mut model) in scenes::all().into_iter().chain(of_cases) {
         model.render.size = [64, 48];
-        let blob = prepare::<K>(&model, &Options::default()).expect("it fits").blob;
+        let stored = |prefer| prepare::<K>(&model, &Options { prefer, ..Options::default() }).expect("it fits").blob;
+        let (blob, small) = (stored(Prefer::Speed), stored(Prefer::Size));
         let full = picture::<Full<K>>(blob.bytes()).expect("it has everything");
-        for (bit, found) in pictures(blob.bytes()).into_iter().enumerate() {
+        assert_eq!(picture::<Full<K>>(small.bytes()), Some(full), "{} {name}: both layouts", K::NAME);
+        if small != blob {
+            shared += 1;
+            assert!(small.bytes().len() < blob.bytes().len(), "{} {name}", K::NAME);
+            let found = picture::<Without<K, 29>>(small.bytes());
+            assert_eq!(found, Some(full), "{} draws {name} otherwise with shared vertices", K::NAME);
+        }
+        for (place, found) in without_each::<K>(blob.bytes()).into_iter().enumerate() {
             if let Some(found) = found {
-                tried[bit] += 1;
+                let bit = BITS[place];
+                tried[place] += 1;
                 assert_eq!(found, full, "{} draws {name} otherwise without the need of bit {bit}", K::NAME);
             }
         }
     }
     println!("{}: scenes that did without each need: {tried:?}", K::NAME);
+    assert!(shared > 5, "{shared} scenes with shared vertices");
     assert!(tried.iter().filter(|&&count| count > 0).count() > 20, "{tried:?}");
 }
 
 #[test]
 fn exact14_draws_the_same_without_what_a_scene_needs_not() {
-    check::<Exact14>(
-        |blob| without_each!(Exact14, blob, 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28),
-    );
+    check::<Exact14>();
 }
 
 #[test]
 fn hanika_c_draws_the_same_without_what_a_scene_needs_not() {
-    check::<HanikaC>(
-        |blob| without_each!(HanikaC, blob, 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28),
-    );
+    check::<HanikaC>();
 }

@@ -7,6 +7,7 @@ use core_rt::bvh::{Bvh, Intersect};
 use core_rt::exact::{Exact, Ray, Width, Width14, Width20, Width29};
 use core_rt::hanika::{HanikaC, HanikaCd, HanikaCons};
 use core_rt::kernel::{Bounds, Kernel, NONE, Vertices};
+use core_rt::mesh::Mesh;
 use core_rt::num::Word;
 use core_rt::profile::Full;
 use core_rt::scene::MAX_DEPTH;
@@ -50,7 +51,7 @@ impl<W: Width<Word: Into<i64>, Wide: Into<i128>>> Built<W> {
         Bvh {
             root: self.tree.root,
             nodes: &self.nodes,
-            triangles: &self.triangles,
+            triangles: Mesh::whole((), &self.triangles),
             spheres: &self.spheres,
             ids: Integers::Wide(&self.tree.order),
         }

@@ -11,19 +11,26 @@ use crate::colour::{Radiance, Transfer};
 use crate::kernel::{Bounds, Kernel};
 use crate::profile::{Need, Needs, Profile};
 use crate::record::{Light, Lustre, Material, Reach};
-use crate::scene::{MAX_DEPTH, Shading};
+use crate::scene::{MAX_DEPTH, Scene, Shading};
 use crate::space::{Space, is_unit_q30};
 
-/// Checks what the sections say beside the [tree], which comes first; camera rays by a function that knows which there are.
-pub(crate) fn contents<P: Profile>(
-    header: &Header,
-    settings: <P::Kernel as Kernel>::Settings,
-    starts_within: impl Fn(&Bounds) -> bool,
-    bvh: &Bvh<'_, P>,
-    shading: &Shading<'_, P::Kernel>,
-) -> Result<(), BlobError> {
+/// Checks all that the sections say.
+pub(crate) fn all<P: Profile>(header: &Header, scene: &Scene<'_, P>) -> Result<(), BlobError> {
+    tree(header, &scene.bvh)?;
+    contents(header, &scene.bvh, &scene.shading)?;
+    if P::NEEDS.paint() {
+        scene.shading.paint.check(header.counts.triangles)?;
+    }
+    Ok(())
+}
+
+/// Checks what the sections say beside the [tree], which comes first.
+// Out of line, as the tree's check is: neither has then the other's part of the stack.
+#[inline(never)]
+fn contents<P: Profile>(header: &Header, bvh: &Bvh<'_, P>, shading: &Shading<'_, P::Kernel>) -> Result<(), BlobError> {
+    let starts_within = |whole: &_| header.camera.starts_within(header.camera_use(P::NEEDS), whole, P::Kernel::SPAN);
     origins(starts_within, bvh, shading)?;
-    triangles(header, settings, bvh, shading)?;
+    triangles(header, bvh, shading)?;
     if P::NEEDS.has(Need::Spheres) {
         spheres(header, bvh, shading)?;
     }
@@ -31,22 +38,15 @@ pub(crate) fn contents<P: Profile>(
 }
 
 /// Every triangle must be what the kernel makes of its vertices, and what it refers to must be there.
-fn triangles<P: Profile>(
-    header: &Header,
-    settings: <P::Kernel as Kernel>::Settings,
-    bvh: &Bvh<'_, P>,
-    shading: &Shading<'_, P::Kernel>,
-) -> Result<(), BlobError> {
-    for (index, triangle) in (0..).zip(bvh.triangles) {
-        let material = P::Kernel::material(triangle);
-        let vertices = P::Kernel::vertices(triangle);
-        // Whatever the vertices wrap to, only a record made from vertices on the grid is equal to what is made of them.
-        let consistent = P::Kernel::triangle(settings, &vertices, material).is_some_and(|made| made == *triangle);
+fn triangles<P: Profile>(header: &Header, bvh: &Bvh<'_, P>, shading: &Shading<'_, P::Kernel>) -> Result<(), BlobError> {
+    for index in 0..bvh.triangles.len() {
+        let material_exists =
+            bvh.triangles.material(index).is_some_and(|material| (material as usize) < shading.materials.len());
         let id_exists = bvh.ids.get(index) < header.file_triangles;
         let normals_exist = shading.normal_indices.is_empty()
             || shading.normal_indices.triple(index).iter().all(|&n| (n as usize) < shading.normals.len())
             || shading.is_flat(index);
-        if !(consistent && id_exists && normals_exist && (material as usize) < shading.materials.len()) {
+        if !(bvh.triangles.is_valid(index) && id_exists && normals_exist && material_exists) {
             return Err(BlobError::Triangle { index });
         }
     }
@@ -55,7 +55,7 @@ fn triangles<P: Profile>(
 
 /// Every sphere must be one that the kernel holds, and what it refers to must be there.
 fn spheres<P: Profile>(header: &Header, bvh: &Bvh<'_, P>, shading: &Shading<'_, P::Kernel>) -> Result<(), BlobError> {
-    for (index, (sphere, place)) in (0..).zip(bvh.spheres.iter().zip(bvh.triangles.len() as u32..)) {
+    for (index, (sphere, place)) in (0..).zip(bvh.spheres.iter().zip(bvh.triangles.len()..)) {
         let material = P::Kernel::sphere_material(sphere);
         let consistent = P::Kernel::sphere(&P::Kernel::ball(sphere), material).is_some_and(|made| made == *sphere);
         let id_exists =
@@ -183,11 +183,11 @@ impl Pending {
 // Out of line, so that its stack is on top of neither what the header takes while it is decoded nor of what the rest of the
 // check does: together they are the deepest that a firmware's stack gets.
 #[inline(never)]
-pub(crate) fn tree<P: Profile>(header: &Header, bvh: &Bvh<'_, P>) -> Result<(), BlobError> {
+fn tree<P: Profile>(header: &Header, bvh: &Bvh<'_, P>) -> Result<(), BlobError> {
     // The root has no parent, but what the box test computes with must lie on the grid.
     let (low, high) = (P::Kernel::MARGIN, (1 << P::Kernel::GRID_BITS) - 1 - P::Kernel::MARGIN);
     let grid = Bounds { low: [low; 3], high: [high; 3] };
-    let triangles = bvh.triangles.len() as u32;
+    let triangles = bvh.triangles.len();
     let (mut next_node, mut next_triangle, mut next_sphere) = (0, 0, triangles);
     let mut pending: Vec<Pending, { MAX_DEPTH + 1 }> = Vec::new();
     // A subtree: its reference, the node and slot that hold it, and its level.
@@ -219,12 +219,23 @@ pub(crate) fn tree<P: Profile>(header: &Header, bvh: &Bvh<'_, P>) -> Result<(), 
             }
             Child::Leaf { first, count } => {
                 let enclosed = if P::NEEDS.has(Need::Spheres) && first >= triangles {
-                    let run = next(bvh.spheres, triangles, &mut next_sphere, first, count);
+                    if first != next_sphere {
+                        return Err(BlobError::Tree { node });
+                    }
+                    next_sphere += count; // at most 2^25 + 64
+                    let run = bvh.spheres.get((first - triangles) as usize..(next_sphere - triangles) as usize);
                     run.ok_or(BlobError::Tree { node })?.iter().all(|s| inside(&P::Kernel::ball(s).bounds()))
                 } else {
-                    let run = next(bvh.triangles, 0, &mut next_triangle, first, count);
-                    let run = run.ok_or(BlobError::Tree { node })?;
-                    run.iter().all(|t| inside(&Bounds::of(&P::Kernel::vertices(t))))
+                    if first != next_triangle || count > triangles - first {
+                        return Err(BlobError::Tree { node });
+                    }
+                    next_triangle += count;
+                    let mut enclosed = true;
+                    for index in first..next_triangle {
+                        let vertices = bvh.triangles.vertices(index).ok_or(BlobError::Triangle { index })?;
+                        enclosed &= inside(&Bounds::of(&vertices));
+                    }
+                    enclosed
                 };
                 if !enclosed {
                     return Err(BlobError::Bounds { node });
@@ -241,13 +252,4 @@ pub(crate) fn tree<P: Profile>(header: &Header, bvh: &Bvh<'_, P>) -> Result<(), 
         && next_triangle == triangles
         && (!P::NEEDS.has(Need::Spheres) || (next_sphere - triangles) as usize == bvh.spheres.len());
     if is_whole { Ok(()) } else { Err(BlobError::Tree { node: next_node }) }
-}
-
-/// The records of a leaf, of those that are numbered from `base` on, if its first is the one that comes next.
-fn next<'a, T>(records: &'a [T], base: u32, next: &mut u32, first: u32, count: u32) -> Option<&'a [T]> {
-    if first != *next {
-        return None;
-    }
-    *next += count; // at most 2^25 + 64
-    records.get((first - base) as usize..(first - base + count) as usize)
 }

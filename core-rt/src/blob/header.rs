@@ -16,7 +16,7 @@ use crate::section::{ALIGN, Reader};
 pub const MAGIC: [u8; 8] = *b"\x89intray\n";
 
 /// The format's version.
-pub const VERSION: u16 = 1;
+pub const VERSION: u16 = 2;
 
 /// What stands before the header and never changes its layout, so that every version can be told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
@@ -49,6 +49,8 @@ pub struct Counts {
     pub nodes: u32,
     /// Triangles, and their ids.
     pub triangles: u32,
+    /// Vertices that triangles share: none where they have records.
+    pub vertices: u32,
     /// Spheres, and their ids behind those.
     pub spheres: u32,
     /// Triangles with normal indices: none or all.
@@ -159,6 +161,8 @@ impl Prefix {
 }
 
 /// The header and the sections of a blob whose prefix and checksum are right.
+// Out of line: what decodes a header has it twice on the stack.
+#[inline(never)]
 pub(crate) fn open(bytes: &[u8], kernel: u16) -> Result<(Header, &[u8]), BlobError> {
     let prefix = Prefix::read(bytes)?;
     if prefix.kernel != kernel {

@@ -98,9 +98,9 @@ impl<P: Profile> Bvh<'_, P> {
             let Child::Leaf { first, count } = Child::unpack(leaf.get()) else { return };
             let left = found.left;
             for index in first..first + count {
-                let Some(triangle) = self.triangles.get(index as usize) else { continue };
+                let Some(vertices) = self.triangles.vertices(index) else { continue };
                 stats.triangle();
-                match beam.footprint(&P::Kernel::vertices(triangle), &mut edges) {
+                match beam.footprint(&vertices, &mut edges) {
                     Footprint::Nothing => {}
                     Footprint::Edges => Drawing::new(self, &edges, ray, tile, index, &mut found).draw(),
                     Footprint::Unknown => self.try_all(ray, tile, index, &mut found),
@@ -163,7 +163,7 @@ impl<P: Profile> Bvh<'_, P> {
     /// Whether a ray hits a triangle, nearer than another that it hits or that is [`NONE`].
     #[inline(never)]
     fn replaces(&self, ray: &RayOf<P>, index: u32, other: u32) -> bool {
-        let depth = |index: u32| self.triangles.get(index as usize).and_then(|t| P::Kernel::intersect(ray, t));
+        let depth = |index: u32| self.triangles.get(index).and_then(|triangle| P::Kernel::intersect(ray, &triangle));
         let Some(new) = depth(index) else { return false };
         depth(other).is_none_or(|old| self.nearer((index, &new), (other, &old)))
     }

@@ -72,6 +72,7 @@ impl<W: Width> Kernel for Exact<W> {
     type Word = W::Word;
     type Node = W::Node;
     type Triangle = TriangleRecord<W::Short>;
+    type Vertex = Triple<W::Short>;
     type Sphere = SphereRecord<W::Short>;
     type Ray = Ray<W>;
     type Path = W::Slopes;
@@ -106,6 +107,20 @@ impl<W: Width> Kernel for Exact<W> {
 
     fn vertices(triangle: &Self::Triangle) -> Vertices {
         triangle::vertices::<W>(triangle)
+    }
+
+    fn vertex(place: Triple<i32>) -> Self::Vertex {
+        triangle::vertex::<W>(place)
+    }
+
+    #[inline(always)]
+    fn place(vertex: &Self::Vertex) -> Triple<i32> {
+        vertex.map(|c| W::coordinate(c).low_i32())
+    }
+
+    #[inline(always)]
+    fn assemble((): (), vertices: [&Self::Vertex; 3]) -> Option<Self::Triangle> {
+        triangle::assemble::<W>(vertices.map(|vertex| vertex.map(W::coordinate)), 0)
     }
 
     #[inline]

@@ -23,7 +23,7 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 use super::ray::Ray;
 use super::width::{Wide, Width};
 use crate::kernel::Vertices;
-use crate::num::{Triple, Word, bits, cross, narrow_dot, sub};
+use crate::num::{Triple, Word, cross, narrow_dot, sub};
 
 /// v0, e1, e2, n = N >> k (three fields each), then shift and material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
@@ -89,21 +89,33 @@ pub(super) fn pack<W: Width>(vertices: &Vertices, material: u32) -> Option<Trian
     if !vertices.as_flattened().iter().all(|c| grid.contains(c)) {
         return None;
     }
-    let [v0, v1, v2] = vertices.map(|v| v.map(i64::from));
+    assemble::<W>(vertices.map(|vertex| vertex.map(W::Word::from_i32)), material)
+}
+
+/// The record of a triangle on the grid; `None` where it has no area, or its material is too high.
+#[inline(always)]
+pub(super) fn assemble<W: Width>(
+    [v0, v1, v2]: [Triple<W::Word>; 3],
+    material: u32,
+) -> Option<TriangleRecord<W::Short>> {
     let (e1, e2) = (sub(v1, v0), sub(v2, v0));
-    let normal = cross(e1, e2); // below 2^(2 b) <= 2^58: twice the area of a projection onto a square of side 2^b
-    if normal == [0; 3] {
+    // Twice the area of a projection onto a square of side 2^b: below 2^(2 GRID_BITS), which the word has.
+    let normal = cross(e1, e2);
+    if normal == [W::Word::ZERO; 3] {
         return None;
     }
-    let shift = bits(e1).max(bits(e2)).max(bits(sub(v2, v1)));
-    let n = normal.map(|c| c >> (2 * shift).saturating_sub(W::NORMAL_BITS));
-    let mut record = [W::Short::default(); 13];
-    for (field, value) in record.iter_mut().zip([v0, e1, e2, n].as_flattened()) {
-        *field = W::Short::try_from(*value).ok()?;
-    }
-    let [.., meta] = &mut record;
-    *meta = W::join_meta(shift, material)?;
-    Some(TriangleRecord(record))
+    // One count over the magnitudes: the highest set bit is what matters.
+    let any = |e: Triple<W::Word>| e[0].magnitude() | e[1].magnitude() | e[2].magnitude();
+    let shift = (any(e1) | any(e2) | any(sub(v2, v1))).magnitude_bits();
+    let k = (2 * shift).saturating_sub(W::NORMAL_BITS);
+    let [v0, e1, e2, n] = [v0, e1, e2, normal.map(|c| c >> k)].map(|row| row.map(W::short));
+    let meta = W::join_meta(shift, material)?;
+    Some(TriangleRecord([v0[0], v0[1], v0[2], e1[0], e1[1], e1[2], e2[0], e2[1], e2[2], n[0], n[1], n[2], meta]))
+}
+
+/// The record of a vertex on the grid.
+pub(super) fn vertex<W: Width>(place: Triple<i32>) -> Triple<W::Short> {
+    place.map(|c| W::short(W::Word::from_i32(c)))
 }
 
 /// The corners.

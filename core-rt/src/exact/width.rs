@@ -109,7 +109,7 @@ pub trait Width: Copy + Debug + Default + Send + Sync + 'static {
     /// The word of exact decisions.
     type Wide: Wide + From<Self::Word>;
     /// A signed coordinate in a triangle's record.
-    type Short: Record + Into<Self::Word> + TryFrom<i64> + Default;
+    type Short: Record + Into<Self::Word> + TryFrom<i64>;
     /// The record of a node.
     type Node: BoxNode<Plane: Into<Self::Word>>;
     /// What the box test keeps of a ray.
@@ -120,6 +120,8 @@ pub trait Width: Copy + Debug + Default + Send + Sync + 'static {
     fn coordinate(short: Self::Short) -> Self::Word {
         short.into()
     }
+    /// A coordinate, a component of an edge or of a stored normal, which fit.
+    fn short(word: Self::Word) -> Self::Short;
     /// The exact `a . b`, for `a` an edge, an origin's offset or a direction and `b` a cross product of two of these.
     fn dot(a: Triple<Self::Word>, b: Triple<Self::Word>) -> Self::Wide;
     /// The exact `a . a`, for `a` an edge, an origin's offset or a direction.

@@ -67,6 +67,12 @@ impl Width for Width14 {
         (short as u16).into()
     }
 
+    #[inline(always)]
+    fn short(word: i32) -> i16 {
+        debug_assert!(i32::from(word as i16) == word);
+        word as i16
+    }
+
     /// By 15-bit limbs of b, so that a Cortex-M0 needs `muls` alone. For |a| < 2^15 and |b| <= 2^30 a limb's product is at
     /// most 2^15 (2^15 - 1), and two of them fit; the third is added in 64 bits.
     #[inline]

@@ -86,6 +86,12 @@ impl Width for Width20 {
     type Slopes = PerAxis<Reciprocal20>;
 
     #[inline(always)]
+    fn short(word: i64) -> i32 {
+        debug_assert!(i64::from(word as i32) == word);
+        word as i32
+    }
+
+    #[inline(always)]
     fn dot(a: Triple<i64>, b: Triple<i64>) -> i64 {
         let product = |axis: usize| a[axis].wrapping_mul(b[axis]);
         product(0).wrapping_add(product(1)).wrapping_add(product(2))

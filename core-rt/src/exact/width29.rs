@@ -106,6 +106,12 @@ where
     type Node = BoxNode29;
     type Slopes = <Self as Form>::Slopes;
 
+    #[inline(always)]
+    fn short(word: i64) -> i32 {
+        debug_assert!(i64::from(word as i32) == word);
+        word as i32
+    }
+
     /// The narrow form is by limbs of b, as [`Width14`](super::Width14)'s: of 30 bits, for |a| < 2^31 and |b| < 2^61. A limb's
     /// product is below 2^62, and the third is added in 128 bits.
     #[inline]

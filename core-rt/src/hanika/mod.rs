@@ -83,6 +83,7 @@ impl<V: Variant> Kernel for Hanika<V> {
     type Word = i64;
     type Node = BoxNode29;
     type Triangle = TriangleRecord;
+    type Vertex = Triple<i32>;
     type Sphere = SphereRecord<i32>;
     type Ray = Ray<V::Slab>;
     type Path = Ray<V::Slab>;
@@ -117,6 +118,14 @@ impl<V: Variant> Kernel for Hanika<V> {
 
     fn vertices(triangle: &TriangleRecord) -> Vertices {
         triangle.vertices()
+    }
+
+    fn vertex(place: Triple<i32>) -> Triple<i32> {
+        place
+    }
+
+    fn place(vertex: &Triple<i32>) -> Triple<i32> {
+        *vertex
     }
 
     #[inline]

@@ -15,7 +15,7 @@ pub use recip::{RECIPROCAL_ERROR_BITS, Reciprocal16, mantissa, reciprocal};
 pub use rsqrt::{inverse_sqrt_u32, inverse_sqrt_u64, isqrt_u64, sqrt_u32, sqrt_u64};
 
 use core::fmt::Debug;
-use core::ops::{Add, Mul, Neg, Shl, Shr, Sub};
+use core::ops::{Add, BitOr, Mul, Neg, Shl, Shr, Sub};
 
 /// A machine word that holds a product of two coordinates: `i32` for 14-bit grids, `i64` for 29-bit ones.
 pub trait Word:
@@ -31,6 +31,7 @@ pub trait Word:
     + Neg<Output = Self>
     + Shl<u32, Output = Self>
     + Shr<u32, Output = Self>
+    + BitOr<Output = Self>
     + 'static
 {
     /// Zero.

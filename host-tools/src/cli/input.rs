@@ -14,6 +14,7 @@ use crate::engine::ENGINES;
 use crate::import::{GREATEST_DEPTH, MOST_SAMPLES};
 use crate::model::Format;
 use crate::picture::{SIZES, parse_size, size_is_allowed};
+use crate::prepare;
 use crate::textures::Texels;
 
 /// In a kernel's place: the mesh is to say which.
@@ -64,6 +65,10 @@ pub(super) struct SceneArguments {
         allow_negative_numbers = true
     )]
     pub(super) leaf: Option<u32>,
+
+    /// What a chip has less of: time or flash. The picture is the same [default: speed]
+    #[arg(long, value_enum)]
+    pub(super) prefer: Option<Prefer>,
 
     /// Use a grid of so many bits, instead of all that the kernel has
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32), allow_negative_numbers = true)]
@@ -161,6 +166,25 @@ impl From<KnobArguments> for Knobs {
 impl KnobArguments {
     pub(super) fn any(self) -> bool {
         Knobs::from(self) != Knobs::default()
+    }
+}
+
+/// What a chip has less of.
+#[derive(Clone, Copy, Debug, Default, clap::ValueEnum)]
+pub(super) enum Prefer {
+    /// A record a triangle, with all that its test wants
+    #[default]
+    Speed,
+    /// Triangles that share vertices, at half the bytes
+    Size,
+}
+
+impl From<Prefer> for prepare::Prefer {
+    fn from(prefer: Prefer) -> Self {
+        match prefer {
+            Prefer::Speed => Self::Speed,
+            Prefer::Size => Self::Size,
+        }
     }
 }
 

@@ -102,9 +102,9 @@ impl SceneArguments {
 
     /// Reads a model for the reference, which has neither a tree to set nor knobs.
     pub(super) fn model_for_reference(&self) -> Result<Model, Failure> {
-        if self.leaf.is_some() || self.grid_bits.is_some() || self.knobs.any() {
+        if self.leaf.is_some() || self.prefer.is_some() || self.grid_bits.is_some() || self.knobs.any() {
             return Err(Failure::input(
-                "--leaf, --grid-bits and the knobs of arithmetic are the kernels'; the reference has none",
+                "--leaf, --prefer, --grid-bits and the knobs of arithmetic are the kernels'; the reference has none",
             ));
         }
         self.model()
@@ -193,11 +193,12 @@ impl SceneArguments {
             || self.samples.is_some()
             || self.depth.is_some()
             || self.grid_bits.is_some()
+            || self.prefer.is_some()
             || self.format.is_some()
         {
             return Err(Failure::input(format!(
                 "{path}: the blob is for {}x{} pixels, and its tree is built; --size, --samples, --depth, --format, \
-                 --leaf, --grid-bits, --triangles, --texture-size, --texels and the knobs of its arithmetic need the scene \
+                 --leaf, --prefer, --grid-bits, --triangles, --texture-size, --texels and the knobs of its arithmetic need the scene \
                  that it was made from",
                 own[0], own[1]
             )));
@@ -212,6 +213,7 @@ impl SceneArguments {
     fn options(&self) -> Options {
         let tree = TreeOptions::default();
         Options {
+            prefer: self.prefer.unwrap_or_default().into(),
             tree: self.leaf.map_or(tree, |leaf_max| TreeOptions { leaf_max, leaf_always: true, ..tree }),
             knobs: self.knobs.into(),
             grid_bits: self.grid_bits,

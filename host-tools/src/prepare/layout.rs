@@ -10,6 +10,7 @@ use core_rt::space::Space;
 use zerocopy::IntoBytes;
 
 use super::paint::Paint;
+use super::shared::Shared;
 use super::{PrepareError, camera, header};
 use crate::grid::Grid;
 use crate::model::Model;
@@ -44,6 +45,8 @@ pub(super) struct Parts<'a, N, T, S> {
     pub(super) arithmetic: Arithmetic,
     pub(super) nodes: N,
     pub(super) triangles: T,
+    /// The vertices that triangles share and their three each, where they have no records.
+    pub(super) shared: Option<Shared>,
     pub(super) spheres: S,
     /// The file's number of each triangle.
     pub(super) ids: &'a [u32],
@@ -104,12 +107,18 @@ pub(super) fn write<K: Kernel>(
     >,
 ) -> Result<Blob, PrepareError> {
     let (normals, corners) = normals::<K>(model, parts.ids);
+    let (vertices, shared_corners, numbers): (&[_], &[_], &[_]) = match &parts.shared {
+        Some(shared) => (&shared.vertices, &shared.corners, shared.numbers(parts.materials.len())),
+        None => (&[], &[], &[]),
+    };
     let lights: Vec<_> = model.lights.iter().map(|light| header::light(light, grid)).collect();
     let wide_ids = model.triangles.len() + model.spheres.len() > 1 << 16;
     let ids = [parts.ids, parts.sphere_ids].concat();
     // The largest index is kept for flat triangles.
     let wide_normals = normals.len() >= 1 << 16;
     let needs = header::needs(model, parts.materials, parts.lustres)
+        .with(Need::WholeTriangles, parts.triangles.len() > 0)
+        .with(Need::SharedVertices, parts.shared.is_some())
         .with(Need::SmoothNormals, !corners.is_empty())
         .with(Need::Spheres, !parts.sphere_ids.is_empty())
         .with(Need::WideIds, wide_ids)
@@ -131,7 +140,8 @@ pub(super) fn write<K: Kernel>(
         depth: parts.depth,
         counts: Counts {
             nodes: parts.nodes.len() as u32,
-            triangles: parts.triangles.len() as u32,
+            triangles: parts.ids.len() as u32,
+            vertices: vertices.len() as u32,
             spheres: parts.spheres.len() as u32,
             smooth: corners.len() as u32 / 3,
             normals: normals.len() as u32,
@@ -146,6 +156,8 @@ pub(super) fn write<K: Kernel>(
         arithmetic: parts.arithmetic,
         source: SourceGrid { origin_bits: grid.origin.to_array().map(f64::to_bits), scale_bits: grid.scale.to_bits() },
     };
+    let wide_corners = parts.shared.as_ref().is_some_and(Shared::wide_corners);
+    let wide_numbers = parts.materials.len() > 1 << 16;
     let encoded = postcard::to_stdvec(&header).unwrap_or_default();
     let integer = |wide: bool| if wide { 4 } else { 2 };
     let total: usize = [
@@ -153,6 +165,9 @@ pub(super) fn write<K: Kernel>(
         encoded.len(),
         parts.nodes.len() * size_of::<K::Node>(),
         parts.triangles.len() * size_of::<K::Triangle>(),
+        shared_corners.len() * integer(wide_corners),
+        vertices.len() * size_of::<K::Vertex>(),
+        numbers.len() * integer(wide_numbers),
         parts.spheres.len() * size_of::<K::Sphere>(),
         ids.len() * integer(wide_ids),
         corners.len() * integer(wide_normals),
@@ -186,6 +201,9 @@ pub(super) fn write<K: Kernel>(
     writer.records(encoded.into_iter());
     writer.records(parts.nodes);
     writer.records(parts.triangles);
+    writer.integers(shared_corners, wide_corners);
+    writer.records(vertices.iter().map(|&vertex| K::vertex(vertex)));
+    writer.integers(numbers, wide_numbers);
     writer.records(parts.spheres);
     writer.integers(&ids, wide_ids);
     writer.integers(&corners, wide_normals);

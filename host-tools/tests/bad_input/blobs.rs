@@ -96,10 +96,10 @@ fn foreign() {
 fn of_another_version_or_kernel() {
     let folder = folder("exact29");
     let whole = folder.read("scene.blob");
-    folder.write("scene.blob", &signed(whole.clone(), |blob| blob[8] = 2));
+    folder.write("scene.blob", &signed(whole.clone(), |blob| blob[8] = 1));
     refused(
         &folder,
-        "the blob has format version 2, and this program reads version 1; make it anew with `intray prep`",
+        "the blob has format version 1, and this program reads version 2; make it anew with `intray prep`",
     );
     folder.write("scene.blob", &signed(whole.clone(), |blob| blob[10] = 77));
     // Such as: exact29 (29), exact14 (14).

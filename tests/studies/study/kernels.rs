@@ -139,7 +139,7 @@ fn self_hits<K: Kernel>(blob: &Blob) -> SelfHits {
     let scene = view::<K>(blob);
     let eye = Scene::<Full<K>>::header(blob.bytes()).expect("it was read").camera.eye;
     let of = |ray: &K::Ray, hit: u32| {
-        let triangle = &scene.bvh.triangles[hit as usize];
+        let triangle = &scene.bvh.triangles.records[hit as usize];
         let vertices = K::vertices(triangle);
         let mut found = SelfHits::default();
         if !faces(&vertices, eye) {

@@ -79,7 +79,7 @@ fn header(blob: &Blob, model: &Model) -> Checked {
         false,
         !blob.spheres.is_empty(),
     ];
-    let needs = needs.iter().rev().fold(0, |bits, &need| bits << 1 | u32::from(need))
+    let needs = needs.iter().rev().fold(0u64, |bits, &need| bits << 1 | u64::from(need))
         | looks::needs(blob, model)
         | crate::painted::needs(blob, model);
     let format = match model.render.format {
@@ -88,8 +88,10 @@ fn header(blob: &Blob, model: &Model) -> Checked {
         Format::Gray8 => 2,
     };
     let parallel = matches!(model.camera.projection, Projection::Orthographic { .. });
-    let pixels = u32::from(parallel) << 19 | u32::from(model.render.samples > 1) << 20 | 1 << (25 + format);
-    rule(header.needs == needs | pixels, "needs")?;
+    let pixels = u64::from(parallel) << 19 | u64::from(model.render.samples > 1) << 20 | 1 << (25 + format);
+    let (has, shared) = (!blob.triangles.is_empty(), header.needs >> 31 & 1 == 1);
+    let layout = u64::from(has && !shared) << 29 | u64::from(has && shared) << 31;
+    rule(header.needs == needs | pixels | layout, "needs")?;
     rule(header.format == format, "format")?;
     rule(header.samples == u64::from(model.render.samples), "samples")?;
     rule(header.size == model.render.size.map(u64::from), "size")?;

@@ -33,7 +33,7 @@ fn is(kind: MaterialKind, material: &Material) -> bool {
 }
 
 /// The bits of `needs` that follow from looks.
-pub(crate) fn needs(blob: &Blob, model: &Model) -> u32 {
+pub(crate) fn needs(blob: &Blob, model: &Model) -> u64 {
     let share = |index: usize| used(model).any(|m| weights(m)[index] > 0.0);
     let lobe = |lobe| {
         used(model)
@@ -61,7 +61,7 @@ pub(crate) fn needs(blob: &Blob, model: &Model) -> u32 {
         (28, schlick),
     ]
     .into_iter()
-    .fold(0, |bits, (bit, is_needed)| bits | u32::from(is_needed) << bit)
+    .fold(0, |bits, (bit, is_needed)| bits | u64::from(is_needed) << bit)
 }
 
 /// Whether a colour of the blob is one of the model, to the nearest.

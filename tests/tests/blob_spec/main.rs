@@ -2,6 +2,7 @@
 //! the scenes that went in.
 
 mod agree;
+mod cursor;
 mod looks;
 mod painted;
 mod reader;
@@ -13,7 +14,7 @@ use glam::DVec3;
 use host_tools::engine;
 use host_tools::import::{self, Embedded, load_from};
 use host_tools::model::{Filter, Format, Light, LightKind, Lobe, Model, Projection, Sphere, Transfer, Triangle};
-use host_tools::prepare::{Options, Prepared};
+use host_tools::prepare::{Options, Prefer, Prepared};
 use painted::is_painted;
 use reader::{Blob, crc32, read};
 use tests::scenes;
@@ -121,8 +122,26 @@ fn what_goes_in_is_read_by_the_document() {
         let (mixed, flat) = (prepared(&built_in(), kernel), prepared(&flat(), kernel));
         // What the comparisons rely on: both kinds of triangles, trees of some depth, widths that are narrow.
         assert!(mixed.corners.contains(&None) && mixed.corners.iter().any(Option::is_some));
-        assert!(mixed.header.depth > 5 && mixed.header.needs >> 8 == 1 << (25 - 8));
+        assert!(mixed.header.depth > 5 && mixed.header.needs >> 8 == (1 << 25 | 1 << 29) >> 8);
         assert!(flat.corners.is_empty() && flat.normals.is_empty());
+    }
+}
+
+#[test]
+fn shared_vertices_are_read_by_the_document() {
+    let options = Options { prefer: Prefer::Size, ..Options::default() };
+    let small = |model: &Model, kernel| engine::by_name(kernel).unwrap().prepare(model, &options).unwrap().blob;
+    for kernel in KERNELS {
+        for model in [built_in(), flat(), with_spheres(false), gallery("materials"), carpet(260)] {
+            let found = read(small(&model, kernel).bytes());
+            assert_eq!(agree(&found, &model), Ok(()), "{kernel}");
+            assert!(found.header.needs >> 29 & 0b101 == 0b100, "{kernel}");
+            // Each vertex is there once.
+            let mut places: Vec<_> = found.triangles.iter().flat_map(|triangle| triangle.vertices).collect();
+            places.sort_unstable();
+            places.dedup();
+            assert_eq!(found.header.counts[2], places.len(), "{kernel}");
+        }
     }
 }
 

@@ -6,14 +6,14 @@ use host_tools::model::{Filter, Model};
 use crate::reader::{Blob, Texture};
 
 /// The bits of needs that paint asks for.
-pub(crate) fn needs(blob: &Blob, model: &Model) -> u32 {
+pub(crate) fn needs(blob: &Blob, model: &Model) -> u64 {
     let is_placed = |id: &u32| model.uvs.get(*id as usize).is_some_and(Option::is_some);
     let textured = blob.ids.iter().any(is_placed);
     let bilinear = textured && model.render.filter == Filter::Bilinear;
     let coloured = model.colours.iter().any(|&colour| colour != DVec3::ONE);
     let [.., uv_count, colour_count, _, _, _, _] = blob.header.counts;
     let wide = uv_count.max(colour_count) >= 65_536;
-    u32::from(coloured) << 21 | u32::from(textured) << 22 | u32::from(bilinear) << 23 | u32::from(wide) << 24
+    u64::from(coloured) << 21 | u64::from(textured) << 22 | u64::from(bilinear) << 23 | u64::from(wide) << 24
 }
 
 /// Checks the paint of a blob whose triangles agree.

@@ -1,5 +1,7 @@
 //! A reader of blobs, made from `docs/BLOB.md` alone: plain arithmetic on bytes, and nothing of core-rt.
 
+use super::cursor::Cursor;
+
 /// The document's table of kernels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Kernel {
@@ -61,7 +63,7 @@ pub(crate) struct Radiance {
 
 #[derive(Clone, Debug)]
 pub(crate) struct Header {
-    pub(crate) needs: u32,
+    pub(crate) needs: u64,
     pub(crate) size: [u64; 2],
     pub(crate) eye: [i64; 3],
     pub(crate) along: [i64; 3],
@@ -78,9 +80,9 @@ pub(crate) struct Header {
     pub(crate) root: u32,
     pub(crate) depth: u8,
     pub(crate) max_depth: u8,
-    /// Nodes, triangles, spheres, smooth, normals, texture coordinates, colours, bytes of texels, materials, lustres, checkers,
+    /// Nodes, triangles, shared vertices, spheres, smooth, normals, texture coordinates, colours, bytes of texels, materials, lustres, checkers,
     /// lights.
-    pub(crate) counts: [usize; 12],
+    pub(crate) counts: [usize; 13],
     pub(crate) file_triangles: u64,
     pub(crate) file_spheres: u64,
     /// C, D, E, epsilon.
@@ -109,6 +111,21 @@ pub(crate) struct Triangle {
     pub(crate) n: [i64; 3],
     pub(crate) shift: u32,
     pub(crate) material: u32,
+}
+
+impl Triangle {
+    /// What a record would say of vertices and a material.
+    fn of(kernel: Kernel, vertices: [[i64; 3]; 3], material: u32) -> Self {
+        let less = |a: [i64; 3], b: [i64; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+        let [v0, v1, v2] = vertices;
+        let [e1, e2, e3] = [less(v1, v0), less(v2, v0), less(v2, v1)];
+        let longest = [e1, e2, e3].as_flattened().iter().map(|c| c.unsigned_abs()).max().unwrap_or(0);
+        let shift = 64 - longest.leading_zeros();
+        let cross = |i: usize, j: usize| e1[i] * e2[j] - e1[j] * e2[i];
+        let k = (2 * shift).saturating_sub(kernel.normal_bits);
+        let n = [cross(1, 2), cross(2, 0), cross(0, 1)].map(|c| c >> k);
+        Self { vertices, edges: [e1, e2], n, shift, material }
+    }
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -204,120 +221,11 @@ pub(crate) fn crc32(bytes: &[u8]) -> u32 {
     !crc
 }
 
-struct Cursor<'a> {
-    bytes: &'a [u8],
-    at: usize,
-}
-
-impl Cursor<'_> {
-    fn unsigned(&mut self, size: usize) -> u64 {
-        let bytes = &self.bytes[self.at..self.at + size];
-        self.at += size;
-        bytes.iter().rev().fold(0, |value, &byte| value << 8 | u64::from(byte))
-    }
-
-    fn signed(&mut self, size: usize) -> i64 {
-        let unused = 64 - 8 * size as u32;
-        (self.unsigned(size) << unused) as i64 >> unused
-    }
-
-    fn varint(&mut self, bits: u32) -> u64 {
-        let mut value = 0_u128;
-        for group in 0..bits.div_ceil(7) {
-            let byte = self.unsigned(1) as u128;
-            value |= (byte & 127) << (7 * group);
-            if byte < 128 {
-                assert!(value >> bits == 0, "a varint beyond its type");
-                return value as u64;
-            }
-        }
-        panic!("a varint without end");
-    }
-
-    fn zigzag(&mut self, bits: u32) -> i64 {
-        let value = self.varint(bits);
-        (value >> 1) as i64 ^ -((value & 1) as i64)
-    }
-
-    fn three<T>(&mut self, mut read: impl FnMut(&mut Self) -> T) -> [T; 3] {
-        [read(self), read(self), read(self)]
-    }
-
-    fn pad(&mut self) {
-        while !self.at.is_multiple_of(8) {
-            assert_eq!(self.unsigned(1), 0, "padding");
-        }
-    }
-
-    fn section<T>(&mut self, count: usize, mut read: impl FnMut(&mut Self) -> T) -> Vec<T> {
-        let records = (0..count).map(|_| read(self)).collect();
-        self.pad();
-        records
-    }
-
-    fn radiance(&mut self) -> Radiance {
-        Radiance { mantissa: self.three(|c| c.unsigned(2) as u16), exponent: self.signed(2) }
-    }
-
-    fn encoded_radiance(&mut self) -> Radiance {
-        Radiance { mantissa: self.three(|c| c.varint(16) as u16), exponent: self.zigzag(16) }
-    }
-
-    fn header(&mut self) -> Header {
-        Header {
-            needs: self.varint(32) as u32,
-            size: [self.varint(16), self.varint(16)],
-            eye: self.three(|c| c.zigzag(32)),
-            along: self.three(|c| c.zigzag(32)),
-            first: self.three(|c| c.zigzag(64)),
-            right: self.three(|c| c.zigzag(64)),
-            down: self.three(|c| c.zigzag(64)),
-            fraction_bits: self.unsigned(1) as u8,
-            background: [self.encoded_radiance(), self.encoded_radiance()],
-            ambient: self.encoded_radiance(),
-            transfer: self.varint(32),
-            format: self.varint(32),
-            samples: self.varint(16),
-            max_depth: self.unsigned(1) as u8,
-            root: self.varint(32) as u32,
-            depth: self.unsigned(1) as u8,
-            counts: [(); 12].map(|()| self.varint(32) as usize),
-            file_triangles: self.varint(32),
-            file_spheres: self.varint(32),
-            arithmetic: [(); 4].map(|()| self.unsigned(1) as u8),
-            origin: self.three(|c| f64::from_bits(c.varint(64))),
-            scale: f64::from_bits(self.varint(64)),
-        }
-    }
-
-    fn node(&mut self, kernel: Kernel) -> Node {
-        let mut bounds = || Bounds {
-            low: self.three(|c| c.unsigned(kernel.short) as i64),
-            high: self.three(|c| c.unsigned(kernel.short) as i64 - 1),
-        };
-        Node { boxes: [bounds(), bounds()], children: [self.unsigned(4) as u32, self.unsigned(4) as u32] }
-    }
-
-    fn triangle(&mut self, kernel: Kernel) -> Triangle {
-        let mut row = || self.three(|c| c.signed(kernel.short));
-        let [v0, e1, e2, n] = [row(), row(), row(), row()];
-        let meta = self.unsigned(kernel.short) as u32;
-        let plus = |edge: [i64; 3]| [v0[0] + edge[0], v0[1] + edge[1], v0[2] + edge[2]];
-        Triangle {
-            vertices: [v0, plus(e1), plus(e2)],
-            edges: [e1, e2],
-            n,
-            shift: meta & ((1 << kernel.shift_bits) - 1),
-            material: meta >> kernel.shift_bits,
-        }
-    }
-}
-
 /// Reads a whole blob. Panics where the document is not kept to: this is a test's reader.
 pub(crate) fn read(bytes: &[u8]) -> Blob {
     assert_eq!(bytes[..8], [0x89, 0x69, 0x6e, 0x74, 0x72, 0x61, 0x79, 0x0a], "magic");
     let mut cursor = Cursor { bytes, at: 8 };
-    assert_eq!(cursor.unsigned(2), 1, "version");
+    assert_eq!(cursor.unsigned(2), 2, "version");
     let kernel = match cursor.unsigned(2) {
         14 => EXACT14,
         29 => EXACT29,
@@ -330,12 +238,25 @@ pub(crate) fn read(bytes: &[u8]) -> Blob {
     assert_eq!(cursor.at, 24 + header_size, "header size");
     cursor.pad();
 
-    let [node_count, triangle_count, sphere_count, smooth, normal_count, ..] = header.counts;
+    let [node_count, triangle_count, vertex_count, sphere_count, smooth, normal_count, ..] = header.counts;
     let [.., uv_count, colour_count, texel_count, material_count, lustre_count, checker_count, light_count] =
         header.counts;
     let wide = |bit: u32| if header.needs >> bit & 1 == 1 { 4 } else { 2 };
     let nodes = cursor.section(node_count, |c| c.node(kernel));
-    let triangles = cursor.section(triangle_count, |c| c.triangle(kernel));
+    let triangles = if header.needs >> 31 & 1 == 1 {
+        let wide = |count: usize| if count > 1 << 16 { 4 } else { 2 };
+        let corners = cursor.section(triangle_count, |c| c.three(|c| c.unsigned(wide(vertex_count)) as usize));
+        let vertices = cursor.section(vertex_count, |c| c.three(|c| c.signed(kernel.short)));
+        let numbered = if material_count > 1 { triangle_count } else { 0 };
+        let numbers = cursor.section(numbered, |c| c.unsigned(wide(material_count)) as u32);
+        let material = |index: usize| numbers.get(index).copied().unwrap_or(0);
+        let whole = |(index, corners): (usize, [usize; 3])| {
+            Triangle::of(kernel, corners.map(|corner| vertices[corner]), material(index))
+        };
+        corners.into_iter().enumerate().map(whole).collect()
+    } else {
+        cursor.section(triangle_count, |c| c.triangle(kernel))
+    };
     let spheres = cursor.section(sphere_count, |c| Sphere {
         centre: c.three(|c| c.signed(kernel.short)),
         radius: c.signed(kernel.short),

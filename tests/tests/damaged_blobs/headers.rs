@@ -27,7 +27,7 @@ fn broken_headers<K: Kernel>() {
                 BlobError::Header
             }),
             ("fewer fractional bits than there are", |d| d.header.camera.fraction_bits -= 1, BlobError::Header),
-            ("a need from the future", |d| d.header.needs = Needs::from_bits(1 << 31), BlobError::Header),
+            ("a need from the future", |d| d.header.needs = Needs::from_bits(1 << 40), BlobError::Header),
         ],
     );
     let good = Draft::<K>::read(sample::<K>(false).bytes()).expect("a good blob");
@@ -120,7 +120,7 @@ fn broken_padding<K: Kernel>() {
 
 /// The needs of a draft but for one.
 fn without<K: Kernel>(draft: &Draft<K>, need: Need) -> Needs {
-    Needs::from_bits(draft.header.needs.bits() & !(need as u32))
+    Needs::from_bits(draft.header.needs.bits() & !(need as u64))
 }
 
 /// A profile that has everything but directional lights.
@@ -129,7 +129,7 @@ struct Smaller<K>(core::marker::PhantomData<K>);
 
 impl<K: Kernel> Profile for Smaller<K> {
     type Kernel = K;
-    const NEEDS: Needs = Needs::from_bits(Needs::ALL.bits() & !(Need::DirectionalLight as u32));
+    const NEEDS: Needs = Needs::from_bits(Needs::ALL.bits() & !(Need::DirectionalLight as u64));
 }
 
 fn undeclared_needs<K: Kernel>() {

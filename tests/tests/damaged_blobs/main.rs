@@ -9,6 +9,7 @@ mod contents;
 mod extremes;
 mod headers;
 mod paint;
+mod shared;
 mod spheres;
 mod trees;
 

@@ -32,7 +32,7 @@ fn the_sample_is_good<K: Kernel>() {
 
 /// Takes a need out of the header.
 fn without<K: Kernel>(draft: &mut Draft<K>, need: Need) {
-    draft.header.needs = Needs::from_bits(draft.header.needs.bits() & !(need as u32));
+    draft.header.needs = Needs::from_bits(draft.header.needs.bits() & !(need as u64));
 }
 
 /// The first triangle with coordinates.

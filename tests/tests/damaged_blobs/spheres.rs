@@ -109,7 +109,7 @@ const fn draft_nodes() -> u32 {
 }
 
 fn without(needs: Needs) -> Needs {
-    Needs::from_bits(needs.bits() & !(Need::Spheres as u32))
+    Needs::from_bits(needs.bits() & !(Need::Spheres as u64))
 }
 
 /// A profile that has everything but spheres.
@@ -118,7 +118,7 @@ struct Flat<K>(core::marker::PhantomData<K>);
 
 impl<K: Kernel> Profile for Flat<K> {
     type Kernel = K;
-    const NEEDS: Needs = Needs::from_bits(Needs::ALL.bits() & !(Need::Spheres as u32));
+    const NEEDS: Needs = Needs::from_bits(Needs::ALL.bits() & !(Need::Spheres as u64));
 }
 
 fn a_profile_without_them<K: Kernel>() {
@@ -151,7 +151,8 @@ fn at_the_ends_of_all_ranges<K: Kernel>() {
     header.counts.nodes = 1;
     (header.counts.triangles, header.counts.spheres) = (0, 16);
     (header.counts.smooth, header.counts.normals, header.counts.lights) = (0, 0, 8);
-    let bits = header.needs.bits() & !(Need::SmoothNormals as u32 | Need::DirectionalLight as u32);
+    let absent = [Need::SmoothNormals, Need::DirectionalLight, Need::WholeTriangles];
+    let bits = absent.iter().fold(header.needs.bits(), |bits, &need| bits & !(need as u64));
     header.needs = Needs::from_bits(bits);
     let largest = (1i64 << (K::DIRECTION_BITS + 4)) - 9;
     for eye in (0..8).map(|i| corner(i, near, far)).chain([[(low + high) / 2; 3]]) {

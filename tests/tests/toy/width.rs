@@ -80,6 +80,10 @@ impl<const DIRECTION_BITS: u32, const FAULT: u8> Width for Toy<DIRECTION_BITS, F
     type Node = BoxNode14;
     type Slopes = PerAxis<ToyReciprocal<DIRECTION_BITS, FAULT>>;
 
+    fn short(word: i32) -> i8 {
+        word as i8
+    }
+
     fn dot(a: Triple<i32>, b: Triple<i32>) -> i64 {
         (0..3).map(|axis| i64::from(a[axis]) * i64::from(b[axis])).sum()
     }
