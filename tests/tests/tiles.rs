@@ -104,7 +104,12 @@ fn compare<W: Width>(name: &str, mesh: &[Vertices], leaf_max: u32, rays: u64, se
         let tile = TILES[random.below(TILES.len() as u64) as usize];
         let found = together(&bvh, Some(&camera), ray, size, tile);
         let differing = found.iter().zip(&expected).filter(|(a, b)| a != b).count();
-        assert_eq!(differing, 0, "{} on {name}, leaves to {leaf_max}: {camera:?} {size:?} by {tile:?}", W::NAME);
+        let first = found.iter().zip(&expected).position(|(a, b)| a != b).map(|place| {
+            let ray = ray([place as u16 % size[0], place as u16 / size[0]]);
+            let hit = |hit: u32| records.get(hit as usize).map(|record| (hit, Exact::<W>::intersect(&ray.unwrap(), record)));
+            (place, hit(found[place]), hit(expected[place]))
+        });
+        assert_eq!(differing, 0, "{} on {name}, leaves to {leaf_max}: {camera:?} {size:?} by {tile:?}: {first:?}", W::NAME);
         sums[0] += expected.len() as u64;
         sums[1] += expected.iter().filter(|&&hit| hit != NONE).count() as u64;
         let beams = Tile::of(size, [SIDE; 2]).filter(|&tile| Frustum::<W>::new(&camera, tile).is_some());

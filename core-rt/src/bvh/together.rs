@@ -280,13 +280,14 @@ impl<'a, 'h, 'b, P: Profile, R: Fn([u16; 2]) -> Option<RayOf<P>>> Drawing<'a, 'h
 
     #[inline(always)]
     fn pixel(&mut self, x: i32, y: i32, is_certain: bool) {
-        let nearness = self.edges.nearness(x, y) >> (self.shift & 31);
+        // What is too near for the room is as near as there is room for, and so not certainly nearer than another of these.
+        let nearness = (self.edges.nearness(x, y) >> (self.shift & 31)).min(i16::MAX.into());
         let place = [x as usize, y as usize];
         let nearer = nearness - i32::from(self.found.nearness[(place[1] << SIDE_BITS | place[0]) % PIXELS]);
         if nearer < -self.spread || (!(is_certain && nearer > self.spread) && !self.replaces(place)) {
             return;
         }
-        self.found.set(place, self.index, nearness.min(i16::MAX.into()) as i16);
+        self.found.set(place, self.index, nearness as i16);
         self.changed = true;
     }
 
