@@ -9,6 +9,7 @@
 
 use crate::camera::Camera;
 use crate::kernel::{Kernel, Vertices};
+use crate::num::Triple;
 use crate::render::Tile;
 
 /// Pixels a side that walk together, at most.
@@ -30,6 +31,8 @@ pub trait Beam<K: Kernel>: Sized {
     fn enter<const AXIS: usize>(&self, node: &K::Node, child: usize, limit: K::Distance) -> Option<K::Distance>;
     /// What of the tile a triangle covers.
     fn footprint(&self, vertices: &Vertices, edges: &mut Edges) -> Footprint;
+    /// Whether the ray of a pixel of the tile hits the triangle of a footprint, where that is certain by the ray's own direction.
+    fn meets(ray: &K::Ray, edges: &Edges) -> Option<bool>;
 }
 
 /// Of kernels that trace every ray by itself.
@@ -59,6 +62,10 @@ impl<K: Kernel> Beam<K> for NoBeam {
 
     fn footprint(&self, _: &Vertices, _: &mut Edges) -> Footprint {
         match *self {}
+    }
+
+    fn meets(_: &K::Ray, _: &Edges) -> Option<bool> {
+        None
     }
 }
 
@@ -101,6 +108,8 @@ pub struct Edges {
     pub edges: [Linear; 3],
     /// All are at least these where it certainly hits.
     pub uncertain: [i32; 3],
+    /// What directions are multiplied by for their values.
+    pub vectors: [Triple<i32>; 3],
     /// The inverse of the depth, before it is shifted.
     pub nearness: Linear,
     /// By what it is shifted to the right.

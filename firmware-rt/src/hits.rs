@@ -33,7 +33,12 @@ pub fn find<P: Profile>(
 ) {
     let ray = |[x, y]: [u16; 2]| scene.primary(&scene.camera, x, y);
     match way {
-        Way::Tile => scene.bvh.closest_tile(scene.shared_origin(), ray, tile, hits, stack, stats),
+        Way::Tile => {
+            for _ in 0..tile.pixels() {
+                stats.ray(RayKind::Primary);
+            }
+            scene.bvh.closest_tile(scene.shared_origin(), ray, tile, hits, stack, stats);
+        }
         Way::Single => {
             for (hit, place) in hits.iter_mut().zip(tile.places()) {
                 stats.ray(RayKind::Primary);

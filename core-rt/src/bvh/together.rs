@@ -284,18 +284,24 @@ impl<'a, 'h, 'b, P: Profile, R: Fn([u16; 2]) -> Option<RayOf<P>>> Drawing<'a, 'h
         let nearness = (self.edges.nearness(x, y) >> (self.shift & 31)).min(i16::MAX.into());
         let place = [x as usize, y as usize];
         let nearer = nearness - i32::from(self.found.nearness[(place[1] << SIDE_BITS | place[0]) % PIXELS]);
-        if nearer < -self.spread || (!(is_certain && nearer > self.spread) && !self.replaces(place)) {
+        let is_nearer = nearer > self.spread;
+        if nearer < -self.spread || (!(is_certain && is_nearer) && !self.replaces(place, is_nearer)) {
             return;
         }
         self.found.set(place, self.index, nearness as i16);
         self.changed = true;
     }
 
+    /// By the pixel's ray: whether the triangle is hit, where that is all there is to know; else also whether it is the nearest.
     #[inline(never)]
-    fn replaces(&self, place: [usize; 2]) -> bool {
+    fn replaces(&self, place: [usize; 2], is_nearer: bool) -> bool {
         let [x, y] = place.map(|c| c as u16);
-        let ray = (self.ray)([self.tile.x + x, self.tile.y + y]);
-        ray.is_some_and(|ray| self.bvh.replaces(&ray, self.index, self.found.hit(place)))
+        let Some(ray) = (self.ray)([self.tile.x + x, self.tile.y + y]) else { return false };
+        match BeamOf::<P>::meets(&ray, self.edges) {
+            Some(false) => false,
+            Some(true) if is_nearer => true,
+            _ => self.bvh.replaces(&ray, self.index, self.found.hit(place)),
+        }
     }
 }
 

@@ -18,10 +18,10 @@
 
 use super::boxes::BoxNode;
 use super::width::{Distance, Wide, Width};
-use super::Exact;
+use super::{Exact, Ray};
 use crate::camera::Camera;
 use crate::kernel::Vertices;
-use crate::num::{Triple, Word, cross, mantissa, reciprocal};
+use crate::num::{Triple, Word, cross, mantissa, narrow_dot, reciprocal};
 use crate::render::Tile;
 use crate::tile::{Beam, Edges, Footprint, Linear, SIDE};
 
@@ -301,7 +301,7 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
             if linear.most(self.last) < 0 {
                 return Footprint::Nothing;
             }
-            (edges.edges[edge], edges.uncertain[edge]) = (linear, 2 * band);
+            (edges.edges[edge], edges.uncertain[edge], edges.vectors[edge]) = (linear, 2 * band, g);
         }
         let (leading, length) = (if is_back { -volume } else { volume }).leading();
         let m = mantissa(leading) as i32;
@@ -317,5 +317,18 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
         edges.shift = nearness_shift as u32;
         edges.band = self.off(towards) + 6 * self.length;
         Footprint::Edges
+    }
+
+    /// A vector is within 1/2 along each axis, or without error: its product with a direction is off by at most half the sum of
+    /// the direction's components.
+    #[inline]
+    fn meets(ray: &Ray<W>, edges: &Edges) -> Option<bool> {
+        let error = (W::Word::ONE + W::Word::ONE + W::Word::ONE) << (W::DIRECTION_BITS - 1);
+        let values = edges.vectors.map(|vector| narrow_dot(ray.direction, vector.map(W::Word::from_i32)));
+        if values.iter().any(|&value| value < -error) {
+            Some(false)
+        } else {
+            values.iter().all(|&value| value > error).then_some(true)
+        }
     }
 }
