@@ -9,6 +9,7 @@
 //! The nearest hit is the smallest (t, id), in exact order, with the id that the triangle has in its file. So the answer
 //! does not depend on the order of the visit, and nothing is pruned at equal t.
 
+mod drawing;
 mod together;
 
 use core::cmp::Ordering;

@@ -7,8 +7,8 @@ use core_rt::arithmetic::{Arithmetic, Knobs};
 use core_rt::camera::Camera;
 use core_rt::kernel::{Bounds, Kernel, NONE, Surface, Vertices};
 use core_rt::num::{Triple, Word};
-use core_rt::tile::NoBeam;
 use core_rt::sphere::Ball;
+use core_rt::tile::NoBeam;
 
 use crate::boxes;
 use crate::format::Format;

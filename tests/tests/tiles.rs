@@ -106,10 +106,16 @@ fn compare<W: Width>(name: &str, mesh: &[Vertices], leaf_max: u32, rays: u64, se
         let differing = found.iter().zip(&expected).filter(|(a, b)| a != b).count();
         let first = found.iter().zip(&expected).position(|(a, b)| a != b).map(|place| {
             let ray = ray([place as u16 % size[0], place as u16 / size[0]]);
-            let hit = |hit: u32| records.get(hit as usize).map(|record| (hit, Exact::<W>::intersect(&ray.unwrap(), record)));
+            let hit =
+                |hit: u32| records.get(hit as usize).map(|record| (hit, Exact::<W>::intersect(&ray.unwrap(), record)));
             (place, hit(found[place]), hit(expected[place]))
         });
-        assert_eq!(differing, 0, "{} on {name}, leaves to {leaf_max}: {camera:?} {size:?} by {tile:?}: {first:?}", W::NAME);
+        assert_eq!(
+            differing,
+            0,
+            "{} on {name}, leaves to {leaf_max}: {camera:?} {size:?} by {tile:?}: {first:?}",
+            W::NAME
+        );
         sums[0] += expected.len() as u64;
         sums[1] += expected.iter().filter(|&&hit| hit != NONE).count() as u64;
         let beams = Tile::of(size, [SIDE; 2]).filter(|&tile| Frustum::<W>::new(&camera, tile).is_some());
@@ -188,7 +194,8 @@ where
                         let (x, y) = (i64::from(x - tile.x), i64::from(y - tile.y));
                         i64::from(linear.first) + x * i64::from(linear.right) + y * i64::from(linear.down)
                     };
-                    let context = || format!("{} on {name}: {camera:?} {size:?} {corners:?} {edges:?} {x} {y}", W::NAME);
+                    let context =
+                        || format!("{} on {name}: {camera:?} {size:?} {corners:?} {edges:?} {x} {y}", W::NAME);
                     tally.pixels += 1;
                     tally.hits += u64::from(depth.is_some());
                     match footprint {

@@ -120,7 +120,11 @@ impl<W: Width> Frustum<W> {
     fn linear(&self, g: Triple<i32>) -> Linear {
         let f = self.fraction_bits;
         let dot = |d: &Triple<i32>| d[0] * g[0] + d[1] * g[1] + d[2] * g[2];
-        Linear { first: dot(&self.first) + (dot(&self.rest) >> f), right: dot(&self.right) >> f, down: dot(&self.down) >> f }
+        Linear {
+            first: dot(&self.first) + (dot(&self.rest) >> f),
+            right: dot(&self.right) >> f,
+            down: dot(&self.down) >> f,
+        }
     }
 
     /// The sum of the magnitudes of a vector's components times what directions are off, rounded up.
@@ -161,14 +165,12 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
 
         // The corners, in quarters of a unit.
         let quarters = fraction_bits - 2;
-        let corner = |x: i32, y: i32| [0, 1, 2].map(|axis| (first[axis] + x * right[axis] + y * down[axis]) >> quarters);
+        let corner =
+            |x: i32, y: i32| [0, 1, 2].map(|axis| (first[axis] + x * right[axis] + y * down[axis]) >> quarters);
         let corners = [corner(0, 0), corner(last[0], 0), corner(0, last[1]), corner(last[0], last[1])];
         let middle = middle.map(i32::abs);
-        let axis = if middle[0] >= middle[1] && middle[0] >= middle[2] {
-            0
-        } else {
-            1 + usize::from(middle[2] > middle[1])
-        };
+        let axis =
+            if middle[0] >= middle[1] && middle[0] >= middle[2] { 0 } else { 1 + usize::from(middle[2] > middle[1]) };
         let is_down = corners[0][axis] < 0;
         let across = [(axis + 1) % 3, (axis + 2) % 3];
         let (mut low, mut high, mut largest, mut smallest) = ([i32::MAX; 2], [i32::MIN; 2], 0, i32::MAX);
@@ -192,7 +194,9 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
         let r = reciprocal((smallest - 8) as u32);
         let off = 3 * ((spread >> quarters) + 2);
         let margin = ((off * r.mantissa as i32) >> (r.log2_d + 2)) + 8;
-        if low.iter().any(|&low| low - margin <= -(2 << SLOPE_BITS)) || high.iter().any(|&high| high + margin >= 2 << SLOPE_BITS) {
+        if low.iter().any(|&low| low - margin <= -(2 << SLOPE_BITS))
+            || high.iter().any(|&high| high + margin >= 2 << SLOPE_BITS)
+        {
             return None;
         }
         let origin = camera.eye();
@@ -203,10 +207,12 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
             // What low planes are counted from, and high ones.
             let from = |axis: usize, is_low: bool| if is_low { up(axis) } else { below(axis) };
             let u_is_low = (slope < 0) == is_low;
-            let offset = (from(across[which], is_low) << SLOPE_BITS).wrapping_sub(slope.wrapping_mul(from(axis, u_is_low)));
+            let offset =
+                (from(across[which], is_low) << SLOPE_BITS).wrapping_sub(slope.wrapping_mul(from(axis, u_is_low)));
             Side { slope, offset }
         };
-        let sides = [0, 1].map(|which| [side(which, high[which] + margin, true), side(which, low[which] - margin, false)]);
+        let sides =
+            [0, 1].map(|which| [side(which, high[which] + margin, true), side(which, low[which] - margin, false)]);
         let sum = |v: &Triple<i32>| v[0].abs() + v[1].abs() + v[2].abs();
         let length = ((sum(&first) + last[0] * sum(&right) + last[1] * sum(&down)) >> fraction_bits) + 4;
         let mask = (1 << fraction_bits) - 1;

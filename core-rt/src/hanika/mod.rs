@@ -43,8 +43,8 @@ use crate::exact::{BoxNode, BoxNode29};
 use crate::kernel::{Bounds, Kernel, NONE, Surface, Vertices};
 use crate::num::Triple;
 use crate::space::{GridQ31, Space};
-use crate::tile::NoBeam;
 use crate::sphere::{Ball, SphereRecord};
+use crate::tile::NoBeam;
 
 /// The report's kernel, in one of its variants.
 #[derive(Clone, Copy, Debug, Default)]
