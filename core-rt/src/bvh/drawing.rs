@@ -15,7 +15,7 @@ const SIDE_BITS: u32 = SIDE.trailing_zeros();
 /// Pixels a side of a block, which is left out at once where a triangle does not reach it.
 const BLOCK: i32 = 4;
 
-/// The nearness of no hit; others are above it.
+/// The nearness of no hit; others are not negative.
 pub(super) const NOWHERE: i16 = i16::MIN;
 
 /// The bits of a nearness for which there is room to be as near again, twice.
@@ -54,7 +54,8 @@ impl Found<'_> {
     #[inline(never)]
     pub(super) fn least(&self) -> i32 {
         let least = self.nearness.iter().copied().fold(i16::MAX, i16::min);
-        (i32::from(least) - self.band) << self.shift.unwrap_or(0)
+        // Below 2^30 as the nearnesses were before they were shifted.
+        (i32::from(least) - self.band).max(0) << self.shift.unwrap_or(0)
     }
 
     #[inline(always)]
@@ -72,15 +73,20 @@ impl Found<'_> {
 }
 
 /// A triangle that is put where it is the nearest.
+///
+/// What its nearness and that of another hit are wrong by is at most `spread`; where they differ by more, their order is that of
+/// the hits. Elsewhere, and where the triangle's edges do not decide, the pixel's ray is asked.
 pub(super) struct Drawing<'a, 'h, 'b, P: Profile, R> {
     bvh: &'a Bvh<'b, P>,
     ray: &'a R,
     index: u32,
     tile: Tile,
     edges: &'a Edges,
-    /// By what the nearness of the triangle is shifted, and what a difference to another may be off.
+    /// By what the triangle's nearness is shifted to the right, in all.
     shift: u32,
+    /// By what it may be wrong then; one for each shift, and one for that of the band.
     band: i32,
+    /// By what its difference from another may be.
     spread: i32,
     found: &'a mut Found<'h>,
     changed: bool,
@@ -157,8 +163,9 @@ impl<'a, 'h, 'b, P: Profile, R: Fn([u16; 2]) -> Option<RayOf<P>>> Drawing<'a, 'h
 
     #[inline(always)]
     fn pixel(&mut self, x: i32, y: i32, is_certain: bool) {
-        // What is too near for the room is as near as there is room for, and so not certainly nearer than another of these.
-        let nearness = (self.edges.nearness(x, y) >> (self.shift & 31)).min(i16::MAX.into());
+        // What is too near for the room is as near as there is room for, and so not certainly nearer than another of these. A
+        // hit's is positive but for its error.
+        let nearness = (self.edges.nearness(x, y) >> (self.shift & 31)).clamp(0, i16::MAX.into());
         let place = [x as usize, y as usize];
         let nearer = nearness - i32::from(self.found.nearness[(place[1] << SIDE_BITS | place[0]) % PIXELS]);
         let is_nearer = nearer > self.spread;
