@@ -31,13 +31,15 @@ impl<P: Profile> Bvh<'_, P> {
         stack: &mut Stack<P::Kernel>,
         stats: &mut impl Stats,
     ) {
+        // A tile knows triangles alone.
+        let camera = camera.filter(|_| !P::NEEDS.has(Need::Spheres) || self.spheres.is_empty());
         let stride = usize::from(tile.width);
         for part in Tile::of([tile.width, tile.height], [SIDE; 2]) {
             let start = usize::from(part.y) * stride + usize::from(part.x);
             let hits = hits.get_mut(start..).unwrap_or_default();
             let part = Tile { x: tile.x + part.x, y: tile.y + part.y, ..part };
-            let beam = camera.and_then(|camera| BeamOf::<P>::new(camera, part));
-            if beam.is_some_and(|beam| self.together(&beam, &ray, part, Rows { hits, stride }, stack, stats)) {
+            if let Some(beam) = camera.and_then(|camera| BeamOf::<P>::new(camera, part)) {
+                self.together(&beam, &ray, part, Rows { hits, stride }, stack, stats);
                 continue;
             }
             for (y, row) in (part.y..).zip(hits.chunks_mut(stride.max(1)).take(part.height.into())) {
@@ -48,7 +50,6 @@ impl<P: Profile> Bvh<'_, P> {
         }
     }
 
-    /// Whether the hits of a tile's triangles are those of the scene: not where its rays come to a sphere.
     fn together(
         &self,
         beam: &BeamOf<P>,
@@ -57,7 +58,7 @@ impl<P: Profile> Bvh<'_, P> {
         Rows { hits, stride }: Rows<'_>,
         stack: &mut Stack<P::Kernel>,
         stats: &mut impl Stats,
-    ) -> bool {
+    ) {
         let mut found = Found { hits, stride, open: 0, nearness: [i16::MAX; PIXELS], shift: None, band: 0 };
         let rows = found.hits.chunks_mut(stride.max(1)).zip(found.nearness.as_chunks_mut::<{ SIDE as usize }>().0);
         for (hits, nearness) in rows.take(tile.height.into()) {
@@ -69,10 +70,7 @@ impl<P: Profile> Bvh<'_, P> {
         let mut next = Some(self.root);
         stack.clear();
         while let Some(leaf) = next.and_then(|child| self.entered(beam, child, limit, stack, stats)) {
-            let Child::Leaf { first, count } = Child::unpack(leaf.get()) else { break };
-            if P::NEEDS.has(Need::Spheres) && first >= self.triangles.len() {
-                return false;
-            }
+            let Child::Leaf { first, count } = Child::unpack(leaf.get()) else { return };
             for index in first..first + count {
                 let Some(vertices) = self.triangles.vertices(index) else { continue };
                 stats.triangle();
@@ -87,7 +85,6 @@ impl<P: Profile> Bvh<'_, P> {
             }
             next = waiting::<P::Kernel>(stack, limit);
         }
-        true
     }
 
     #[inline(always)]
