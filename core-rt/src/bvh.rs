@@ -128,7 +128,7 @@ pub struct Bvh<'a, P: Profile> {
     pub triangles: Mesh<'a, P>,
     /// Spheres in the order of the leaves; none where the profile has none.
     pub spheres: &'a [<P::Kernel as Kernel>::Sphere],
-    /// The id of each primitive: its index in the file.
+    /// The id of each primitive, where records of triangles have none.
     pub ids: Integers<'a>,
 }
 
@@ -143,6 +143,13 @@ impl<'a, P: Profile> Bvh<'a, P> {
         self.spheres.get(index.checked_sub(self.triangles.len())? as usize)
     }
 
+    /// The id of a primitive: its index in the file; past the end the largest number.
+    #[inline]
+    #[must_use]
+    pub fn id(&self, index: u32) -> u32 {
+        if P::NEEDS.has(Need::Ids) && !self.ids.is_empty() { self.ids.get(index) } else { self.triangles.id(index) }
+    }
+
     /// The boxes of all primitives, triangles first.
     pub fn bounds(&self) -> impl Iterator<Item = Bounds> {
         let spheres = if P::NEEDS.has(Need::Spheres) { self.spheres } else { &[] };
@@ -154,7 +161,7 @@ impl<'a, P: Profile> Bvh<'a, P> {
     fn nearer(&self, (index, depth): (u32, &DepthOf<P>), (other, than): (u32, &DepthOf<P>)) -> bool {
         match P::Kernel::order(depth, than) {
             Ordering::Less => true,
-            Ordering::Equal => self.ids.get(index) < self.ids.get(other),
+            Ordering::Equal => self.id(index) < self.id(other),
             Ordering::Greater => false,
         }
     }

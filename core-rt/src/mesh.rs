@@ -16,6 +16,8 @@ pub struct Mesh<'a, P: Profile> {
     pub settings: <P::Kernel as Kernel>::Settings,
     /// A record a triangle; none where vertices are shared.
     pub records: &'a [<P::Kernel as Kernel>::Triangle],
+    /// How many bits of a record's material number are that: [`Mesh::NO_IDS`], or those above are the triangle's id.
+    pub material_bits: u8,
     /// Three vertices a triangle; none where triangles have records.
     pub corners: Integers<'a>,
     /// The vertices that corners refer to.
@@ -25,13 +27,23 @@ pub struct Mesh<'a, P: Profile> {
 }
 
 impl<'a, P: Profile> Mesh<'a, P> {
+    /// In place of `material_bits`: all of them. No kernel has more.
+    pub const NO_IDS: u8 = 31;
+
     /// Triangles with a record each.
     #[must_use]
     pub const fn whole(
         settings: <P::Kernel as Kernel>::Settings,
         records: &'a [<P::Kernel as Kernel>::Triangle],
     ) -> Self {
-        Self { settings, records, corners: Integers::NONE, vertices: &[], materials: Integers::NONE }
+        Self {
+            settings,
+            records,
+            material_bits: Self::NO_IDS,
+            corners: Integers::NONE,
+            vertices: &[],
+            materials: Integers::NONE,
+        }
     }
 
     /// Whether triangles share vertices; known when the code is compiled, but to a profile that has both layouts.
@@ -87,12 +99,20 @@ impl<'a, P: Profile> Mesh<'a, P> {
     #[must_use]
     pub fn material(&self, index: u32) -> Option<u32> {
         if !self.is_shared() {
-            return self.records.get(index as usize).map(P::Kernel::material);
+            let number = P::Kernel::material(self.records.get(index as usize)?);
+            return Some(number & ((1 << self.material_bits) - 1));
         }
         match self.materials.is_empty() {
             true => (index < self.len()).then_some(0),
             false => Some(self.materials.get(index)),
         }
+    }
+
+    /// The id of a triangle that has it in its record; past the end the largest.
+    #[inline]
+    #[must_use]
+    pub fn id(&self, index: u32) -> u32 {
+        self.records.get(index as usize).map_or(u32::MAX, |record| P::Kernel::material(record) >> self.material_bits)
     }
 
     /// The corners of a triangle; `None` where there is none.
@@ -120,9 +140,13 @@ impl<'a, P: Profile> Mesh<'a, P> {
 
     /// Whether a triangle is what the kernel makes of its vertices.
     pub(crate) fn is_valid(&self, index: u32) -> bool {
-        let (Some(vertices), Some(material)) = (self.vertices(index), self.material(index)) else { return false };
+        let Some(vertices) = self.vertices(index) else { return false };
+        let made = |number| P::Kernel::triangle(self.settings, &vertices, number);
+        if self.is_shared() {
+            return made(0).is_some();
+        }
         // Whatever the vertices of a record wrap to, only one made from vertices on the grid is equal to what is made of them.
-        let made = P::Kernel::triangle(self.settings, &vertices, material);
-        made.is_some_and(|made| self.is_shared() || self.records.get(index as usize).is_some_and(|own| *own == made))
+        let own = self.records.get(index as usize);
+        own.is_some_and(|own| made(P::Kernel::material(own)).is_some_and(|made| made == *own))
     }
 }

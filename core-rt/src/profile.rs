@@ -76,11 +76,13 @@ pub enum Need {
     WholeTriangles = 1 << 29,
     /// Triangles that share vertices.
     SharedVertices = 1 << 31,
+    /// Ids apart from what they are of.
+    Ids = 1 << 32,
 }
 
 impl Need {
     /// All of them.
-    pub const ALL: [Self; 31] = [
+    pub const ALL: [Self; 32] = [
         Self::PointLight,
         Self::DirectionalLight,
         Self::Shadows,
@@ -112,6 +114,7 @@ impl Need {
         Self::Schlick,
         Self::WholeTriangles,
         Self::SharedVertices,
+        Self::Ids,
     ];
 }
 
@@ -149,6 +152,7 @@ impl Display for Need {
             Self::Schlick => "reflections after Schlick",
             Self::WholeTriangles => "triangles with records",
             Self::SharedVertices => "shared vertices",
+            Self::Ids => "ids of their own",
         })
     }
 }

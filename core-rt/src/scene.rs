@@ -208,10 +208,13 @@ fn geometry<'a, P: Profile>(
     let smooth = header.needs.has(Need::SmoothNormals);
     let (whole, shared) = (header.needs.has(Need::WholeTriangles), header.needs.has(Need::SharedVertices));
     let primitives = counts.triangles.checked_add(counts.spheres)?;
+    let apart = header.needs.has(Need::Ids);
     let consistent = primitives > 0
         && !(whole && shared)
         && (whole || shared) == (counts.triangles > 0)
         && shared == (counts.vertices > 0)
+        // Only records have ids in them.
+        && (apart || (whole && counts.spheres == 0 && header.material_bits < Mesh::<P>::NO_IDS))
         && header.needs.has(Need::Spheres) == (counts.spheres > 0)
         && counts.smooth == if smooth { counts.triangles } else { 0 }
         && smooth == (counts.normals > 0);
@@ -227,6 +230,7 @@ fn geometry<'a, P: Profile>(
         triangles: Mesh {
             settings,
             records: reader.records(with_record)?,
+            material_bits: if apart { Mesh::<P>::NO_IDS } else { header.material_bits },
             corners: reader.integers(with_corners.checked_mul(3)?, counts.vertices > 1 << 16)?,
             vertices: reader.records(counts.vertices)?,
             materials: reader
@@ -234,7 +238,7 @@ fn geometry<'a, P: Profile>(
         },
         // What the profile lacks the scene was found not to need, and then there are none.
         spheres: if P::NEEDS.has(Need::Spheres) { reader.records(counts.spheres)? } else { &[] },
-        ids: reader.integers(primitives, header.needs.has(Need::WideIds))?,
+        ids: reader.integers(if apart { primitives } else { 0 }, header.needs.has(Need::WideIds))?,
     };
     let shading = Shading {
         normal_indices: reader.integers(counts.smooth.checked_mul(3)?, header.needs.has(Need::WideNormals))?,

@@ -39,7 +39,7 @@ pub(crate) fn radiance<P: Profile>(
     stats: &mut impl Stats,
 ) -> ColourOf<P> {
     // That of no hit is none: it is past the end.
-    stats.surface(|| scene.bvh.ids.get(hit));
+    stats.surface(|| scene.bvh.id(hit));
     if !P::NEEDS.branches() {
         return match shade(scene, ray, hit, stack, stats) {
             Some(shaded) => shaded.colour,
@@ -72,7 +72,7 @@ pub(crate) fn radiance<P: Profile>(
         (taken, share, depth) = next;
         ray = &taken;
         hit = scene.bvh.closest(ray, stack, stats);
-        stats.surface(|| scene.bvh.ids.get(hit));
+        stats.surface(|| scene.bvh.id(hit));
     }
 }
 

@@ -5,10 +5,12 @@ mod pico;
 
 use cortex_m as _;
 use cortex_m_rt as _;
-#[cfg(not(feature = "pico"))]
+#[cfg(not(any(feature = "pico", feature = "roomy")))]
 pub(crate) use firmware_rt::board::MICROBIT as BOARD;
 #[cfg(feature = "pico")]
 pub(crate) use firmware_rt::board::PICO as BOARD;
+#[cfg(all(feature = "roomy", not(feature = "pico")))]
+pub(crate) use firmware_rt::board::ROOMY as BOARD;
 use firmware_rt::end;
 
 /// What a board needs before anything else; to be called first.

@@ -51,7 +51,7 @@ pub fn find<P: Profile>(
 /// Paints hits by their triangles' numbers in the file, which do not depend on the kernel; black for none.
 pub fn paint<P: Profile>(scene: &Scene<'_, P>, hits: &[u32], pixels: &mut [u8]) {
     for (pixel, &hit) in pixels.as_chunks_mut().0.iter_mut().zip(hits) {
-        *pixel = if hit == NONE { [0; 3] } else { colour(scene.bvh.ids.get(hit)) };
+        *pixel = if hit == NONE { [0; 3] } else { colour(scene.bvh.id(hit)) };
     }
 }
 

@@ -70,5 +70,6 @@ fn name(need: Need) -> defmt::Str {
         Need::Schlick => defmt::intern!("reflections after Schlick"),
         Need::WholeTriangles => defmt::intern!("triangles with records"),
         Need::SharedVertices => defmt::intern!("shared vertices"),
+        Need::Ids => defmt::intern!("ids of their own"),
     }
 }

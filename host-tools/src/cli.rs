@@ -5,14 +5,16 @@
 mod compare;
 mod demo;
 mod emulate;
+mod external;
 mod failure;
 mod flash;
+mod help;
 mod input;
 mod inspect;
 mod load;
-mod output;
+pub mod output;
 mod prep;
-mod progress;
+pub mod progress;
 mod render;
 mod report;
 mod run_elf;
@@ -23,7 +25,10 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use failure::Failure;
+pub use failure::{Failure, warn};
+pub use help::smaller;
+pub use input::SceneArguments;
+pub use load::Scene;
 
 /// Integer ray tracing for chips without an FPU, and on a PC, bit for bit the same.
 ///
@@ -44,6 +49,9 @@ enum Command {
     Compare(compare::Arguments),
     Emulate(emulate::Arguments),
     Flash(flash::Arguments),
+    /// Say which chips a scene fits, and by how much it misses others
+    #[command(disable_help_flag = true, disable_version_flag = true)]
+    Fit(external::Arguments),
     Stress(stress::Arguments),
     Report(report::Arguments),
     #[command(hide = true)]
@@ -62,6 +70,7 @@ pub fn run() -> ExitCode {
         Some(Command::Compare(arguments)) => compare::run(&arguments),
         Some(Command::Emulate(arguments)) => emulate::run(&arguments),
         Some(Command::Flash(arguments)) => flash::run(&arguments),
+        Some(Command::Fit(arguments)) => return arguments.run(&external::FIT),
         Some(Command::Stress(arguments)) => stress::run(&arguments),
         Some(Command::Report(arguments)) => report::run(&arguments),
         Some(Command::RunElf(arguments)) => run_elf::run(&arguments),

@@ -84,7 +84,7 @@ impl<K: Measure> Trace for Tracer<'_, K> {
         // How often the direction goes into the kernel's, which is exactly 1 where they are the same.
         let share = hit.direction.dot(direction) / direction.length_squared();
         let steps = libm::ldexp(hit.t * share / self.reach.grid.scale, K::DIRECTION_BITS as i32);
-        Some(Hit { t: libm::ldexp(skipped + steps, -exponent), prim: bvh.ids.get(index), u: hit.u, v: hit.v })
+        Some(Hit { t: libm::ldexp(skipped + steps, -exponent), prim: bvh.id(index), u: hit.u, v: hit.v })
     }
 }
 

@@ -91,7 +91,11 @@ impl<K: Kernel> Draft<K> {
                 counts.materials > 1 << 16,
             )?,
             spheres: take(&mut rest, counts.spheres)?,
-            ids: take_integers(&mut rest, counts.triangles.checked_add(counts.spheres)?, needs.has(Need::WideIds))?,
+            ids: take_integers(
+                &mut rest,
+                if_needed(Need::Ids, counts.triangles.checked_add(counts.spheres)?),
+                needs.has(Need::WideIds),
+            )?,
             normal_indices: take_integers(&mut rest, counts.smooth.checked_mul(3)?, needs.has(Need::WideNormals))?,
             normals: take(&mut rest, counts.normals)?,
             uv_indices: take_integers(&mut rest, corners(Need::Texture)?, wide_uvs)?,
@@ -105,6 +109,22 @@ impl<K: Kernel> Draft<K> {
             checkers: take(&mut rest, counts.checkers)?,
             lights: take(&mut rest, counts.lights)?,
         })
+    }
+
+    /// Gives ids that stand in records of triangles a section of their own.
+    ///
+    /// # Panics
+    /// Where there is a record that no kernel makes.
+    pub fn take_ids_apart(&mut self) {
+        let bits = self.header.material_bits;
+        let number = |record: &K::Triangle| K::material(record);
+        self.ids = self.triangles.iter().map(|record| number(record) >> bits).collect();
+        let apart = |record: &K::Triangle| {
+            let material = number(record) & ((1 << bits) - 1);
+            self.triangle(&K::vertices(record), material).expect("a smaller number is held too")
+        };
+        self.triangles = self.triangles.iter().map(apart).collect();
+        self.header.needs = self.header.needs.with(Need::Ids, true);
     }
 
     /// The blob of what is here, with the prefix and the checksum that it should have.
@@ -190,6 +210,17 @@ pub fn repaired(bytes: &[u8], kernel: u16) -> Blob {
 /// Where it cannot be prepared.
 #[must_use]
 pub fn sample<K: Kernel>(smooth: bool) -> Blob {
+    let mut draft = Draft::<K>::read(sample_with_ids_in_records::<K>(smooth).bytes()).expect("a good blob");
+    draft.take_ids_apart();
+    draft.write()
+}
+
+/// [`sample`] as it is prepared: its records have room for ids.
+///
+/// # Panics
+/// Where it cannot be prepared.
+#[must_use]
+pub fn sample_with_ids_in_records<K: Kernel>(smooth: bool) -> Blob {
     prepared_sample::<K>(smooth, "", Prefer::Speed)
 }
 

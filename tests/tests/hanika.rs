@@ -70,7 +70,7 @@ fn brute<K: Kernel>(scene: &Scene<'_, Full<K>>, ray: &K::Ray) -> u32 {
     let spheres = (bvh.triangles.len() as u32..).zip(bvh.spheres);
     let spheres = spheres.map(|(index, sphere)| (index, K::intersect_sphere(ray, sphere, index == skip)));
     let hits = triangles.chain(spheres).filter_map(|(index, depth)| Some((index, depth?)));
-    let nearest = hits.min_by(|(i, a), (j, b)| K::order(a, b).then(bvh.ids.get(*i).cmp(&bvh.ids.get(*j))));
+    let nearest = hits.min_by(|(i, a), (j, b)| K::order(a, b).then(bvh.id(*i).cmp(&bvh.id(*j))));
     nearest.map_or(NONE, |(index, _)| index)
 }
 

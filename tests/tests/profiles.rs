@@ -42,7 +42,7 @@ macro_rules! needs {
         }
     };
 }
-needs!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 31);
+needs!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 31 32);
 
 /// Under how many profiles each bit's absence was no hindrance, over all scenes.
 fn check<K: Kernel>() {

@@ -72,7 +72,7 @@ impl<W: Width<Word: Into<i64>, Wide: Into<i128>>> Built<W> {
         };
         let depth = depth.expect("it was hit");
         let (numerator, denominator) = (depth.numerator.into(), depth.denominator.into());
-        Some(Nearest { prim: bvh.ids.get(hit), numerator, denominator })
+        Some(Nearest { prim: bvh.id(hit), numerator, denominator })
     }
 }
 

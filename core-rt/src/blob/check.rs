@@ -42,7 +42,7 @@ fn triangles<P: Profile>(header: &Header, bvh: &Bvh<'_, P>, shading: &Shading<'_
     for index in 0..bvh.triangles.len() {
         let material_exists =
             bvh.triangles.material(index).is_some_and(|material| (material as usize) < shading.materials.len());
-        let id_exists = bvh.ids.get(index) < header.file_triangles;
+        let id_exists = bvh.id(index) < header.file_triangles;
         let normals_exist = shading.normal_indices.is_empty()
             || shading.normal_indices.triple(index).iter().all(|&n| (n as usize) < shading.normals.len())
             || shading.is_flat(index);
@@ -59,7 +59,7 @@ fn spheres<P: Profile>(header: &Header, bvh: &Bvh<'_, P>, shading: &Shading<'_, 
         let material = P::Kernel::sphere_material(sphere);
         let consistent = P::Kernel::sphere(&P::Kernel::ball(sphere), material).is_some_and(|made| made == *sphere);
         let id_exists =
-            bvh.ids.get(place).checked_sub(header.file_triangles).is_some_and(|number| number < header.file_spheres);
+            bvh.id(place).checked_sub(header.file_triangles).is_some_and(|number| number < header.file_spheres);
         if !(consistent && id_exists && (material as usize) < shading.materials.len()) {
             return Err(BlobError::Sphere { index });
         }

@@ -109,6 +109,8 @@ pub struct Header {
     pub file_triangles: u32,
     /// Spheres in the file, too small ones included: their ids follow those of triangles.
     pub file_spheres: u32,
+    /// How many bits of a record's material number are that; the others are the triangle's id, where ids are not apart.
+    pub material_bits: u8,
     /// What the kernel computes with.
     pub arithmetic: Arithmetic,
     /// Where the grid came from.

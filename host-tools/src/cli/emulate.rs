@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::builder::PossibleValuesParser;
-use core_rt::blob::Header;
 use firmware_rt::board::{self, BOARDS, Board};
 use firmware_rt::build::Traits;
 use firmware_rt::hits::Way;
@@ -13,6 +12,7 @@ use indicatif::ProgressBar;
 use serde::Serialize;
 
 use super::failure::{Failure, warn};
+use super::help::smaller;
 use super::input::SceneArguments;
 use super::load::Scene;
 use super::{output, progress};
@@ -22,7 +22,6 @@ use crate::emulate::elf::Elf;
 use crate::emulate::firmware::{self, Wanted};
 use crate::emulate::machine::Machine;
 use crate::emulate::{EmulateError, Observer, Outcome, Run, room};
-use crate::engine::Sizes;
 use crate::files;
 
 /// Render a scene by a board's firmware, in QEMU
@@ -124,7 +123,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let bytes = scene.blob.bytes();
     firmware::check(board, &Traits::new(scene.engine.id(), &header)).map_err(failure)?;
-    room(board, board.blob(scene.engine.id()), bytes.len() as u64, || help(board, &scene, &header, &sizes))
+    let place = board.blob(scene.engine.id());
+    room(board, place, bytes.len() as u64, || smaller(&scene, &header, &sizes, place.length.into()))
         .map_err(failure)?;
 
     machine.version().map_err(failure)?;
@@ -261,29 +261,4 @@ fn text(arguments: &Arguments, report: &Report) -> String {
         report.stack_bytes,
         report.elf.display(),
     )
-}
-
-/// What would make a blob fit.
-pub(super) fn help(board: &Board, scene: &Scene, header: &Header, sizes: &Sizes) -> String {
-    let triangles = u64::from(header.counts.triangles);
-    let bytes = scene.blob.bytes().len() as u64;
-    // In proportion, a fiftieth less for what does not shrink with the triangles.
-    let fitting = triangles * u64::from(board.blob(scene.engine.id()).length) / bytes * 49 / 50;
-    let mut help = Vec::new();
-    if triangles > 0 {
-        help.push(format!("fewer triangles (`intray prep --triangles {fitting}` instead of {triangles})"));
-    }
-    if scene.engine.name() != "exact14" {
-        help.push("the kernel exact14, whose records are the smallest".into());
-    }
-    if sizes.normals > 0 {
-        help.push(format!("no smooth normals, which take {} bytes", sizes.normals));
-    }
-    if sizes.texels > 0 {
-        help.push(format!(
-            "smaller textures, whose texels take {} bytes (`--texture-size 64`, `--texels rgb565`)",
-            sizes.texels
-        ));
-    }
-    help.join("; ")
 }

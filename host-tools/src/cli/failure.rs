@@ -6,31 +6,31 @@ use std::process::ExitCode;
 
 /// A message for a person, and the status that the process ends with.
 #[derive(Debug)]
-pub(super) struct Failure {
+pub struct Failure {
     message: String,
     status: u8,
 }
 
 impl Failure {
     /// What was given is wrong: status 2.
-    pub(super) fn input(message: impl Into<String>) -> Self {
+    pub fn input(message: impl Into<String>) -> Self {
         Self { message: message.into(), status: 2 }
     }
 
     /// What was asked for was done, and did not come out well: status 1.
-    pub(super) fn check(message: impl Into<String>) -> Self {
+    pub fn check(message: impl Into<String>) -> Self {
         Self { message: message.into(), status: 1 }
     }
 
-    /// Prints the message.
-    pub(super) fn report(&self) -> ExitCode {
+    /// Prints the message; the status to end with.
+    pub fn report(&self) -> ExitCode {
         message("error", &self.message);
         ExitCode::from(self.status)
     }
 }
 
 /// Says on stderr what will not be seen as it was meant.
-pub(super) fn warn(warning: impl Display) {
+pub fn warn(warning: impl Display) {
     message("warning", warning);
 }
 

@@ -8,8 +8,9 @@ use firmware_rt::board::{self, BOARDS, Board};
 use firmware_rt::build::Traits;
 use serde::Serialize;
 
-use super::emulate::{Shown, help};
+use super::emulate::Shown;
 use super::failure::Failure;
+use super::help::smaller;
 use super::input::SceneArguments;
 use super::load::Scene;
 use super::{output, progress};
@@ -98,7 +99,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         error => Failure::check(error.to_string()),
     };
     firmware::check(board, &Traits::new(scene.engine.id(), &header)).map_err(|error| failure(error.into()))?;
-    room(board, board.blob(scene.engine.id()), blob.len() as u64, || help(board, &scene, &header, &sizes))
+    let place = board.blob(scene.engine.id());
+    room(board, place, blob.len() as u64, || smaller(&scene, &header, &sizes, place.length.into()))
         .map_err(|error| failure(error.into()))?;
     let probe = Probe { board, selector: arguments.probe.as_deref() };
     if family.is_none() {

@@ -22,9 +22,9 @@ pub(super) const AUTO: &str = "auto";
 
 /// A scene, and how it is prepared.
 #[derive(Debug, Args)]
-pub(super) struct SceneArguments {
+pub struct SceneArguments {
     /// A scene.toml, a bare .obj, or a blob
-    pub(super) scene: PathBuf,
+    pub scene: PathBuf,
 
     /// The arithmetic, or `auto` for the cheapest that the mesh stands on well; of a blob, its own [default: exact29, on a
     /// chip exact14, to make a blob auto]

@@ -17,14 +17,17 @@ use crate::files;
 use crate::import::{self, Imported};
 use crate::model::Model;
 use crate::picture::{SIZES, size_is_allowed};
-use crate::prepare::{Blob, Degenerates, Options, losses, unplaced};
+use crate::prepare::{Blob, Degenerates, Options, Prefer, losses, unplaced};
 use crate::textures;
 use crate::tree::TreeOptions;
 
 /// A blob, with the kernel that it is for and what it was made from.
-pub(super) struct Scene {
-    pub(super) engine: &'static dyn Engine,
-    pub(super) blob: Blob,
+#[derive(Debug)]
+pub struct Scene {
+    /// The kernel.
+    pub engine: &'static dyn Engine,
+    /// The blob.
+    pub blob: Blob,
     /// Where the scene was not a blob already.
     pub(super) degenerates: Option<Degenerates>,
     /// Why the kernel was chosen, where nobody named it.
@@ -37,8 +40,12 @@ impl SceneArguments {
         self.load_for(ENGINES[0])
     }
 
-    /// The same, where a chip is to render it: with another kernel unless one is asked for.
-    pub(super) fn load_for_chip(&self) -> Result<Scene, Failure> {
+    /// Reads the scene and prepares it for a chip: with another kernel than a host's unless one is asked for. Warnings go to
+    /// stderr.
+    ///
+    /// # Errors
+    /// Where it cannot be read, or the kernel cannot hold it.
+    pub fn load_for_chip(&self) -> Result<Scene, Failure> {
         self.load_for(engine::by_id(Exact14::ID).unwrap_or(ENGINES[0]))
     }
 
@@ -211,9 +218,10 @@ impl SceneArguments {
     }
 
     fn options(&self) -> Options {
-        let tree = TreeOptions::default();
+        let prefer = Prefer::from(self.prefer.unwrap_or_default());
+        let tree = prefer.tree();
         Options {
-            prefer: self.prefer.unwrap_or_default().into(),
+            prefer,
             tree: self.leaf.map_or(tree, |leaf_max| TreeOptions { leaf_max, leaf_always: true, ..tree }),
             knobs: self.knobs.into(),
             grid_bits: self.grid_bits,

@@ -5,7 +5,10 @@ use std::io::{ErrorKind, Write};
 use super::failure::Failure;
 
 /// Prints a line.
-pub(super) fn line(text: &str) -> Result<(), Failure> {
+///
+/// # Errors
+/// Where it cannot be written.
+pub fn line(text: &str) -> Result<(), Failure> {
     match writeln!(std::io::stdout().lock(), "{text}") {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             Err(Failure::input(format!("cannot write to standard output: {error}")))
@@ -15,6 +18,9 @@ pub(super) fn line(text: &str) -> Result<(), Failure> {
 }
 
 /// Prints an object as JSON, in one line.
-pub(super) fn json(value: &impl serde::Serialize) -> Result<(), Failure> {
+///
+/// # Errors
+/// Where it cannot be written.
+pub fn json(value: &impl serde::Serialize) -> Result<(), Failure> {
     line(&serde_json::to_string(value)?)
 }

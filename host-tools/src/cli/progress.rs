@@ -3,7 +3,8 @@
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// A bar over `total` pixels.
-pub(super) fn bar(what: &'static str, total: u64) -> ProgressBar {
+#[must_use]
+pub fn bar(what: &'static str, total: u64) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr());
     if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %, {eta} left") {
         bar.set_style(style);
@@ -13,7 +14,8 @@ pub(super) fn bar(what: &'static str, total: u64) -> ProgressBar {
 }
 
 /// Something that goes round while it lasts, on a terminal.
-pub(super) fn spinner(what: &'static str) -> ProgressBar {
+#[must_use]
+pub fn spinner(what: &'static str) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
     bar.set_message(what);
     bar.enable_steady_tick(std::time::Duration::from_millis(100));

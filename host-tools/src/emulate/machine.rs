@@ -4,7 +4,7 @@ use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 
-use firmware_rt::board::{Board, HIFIVE1, MICROBIT};
+use firmware_rt::board::{Board, HIFIVE1, MICROBIT, ROOMY};
 use firmware_rt::status::Status;
 
 use super::EmulateError;
@@ -12,6 +12,10 @@ use super::elf::Elf;
 
 /// QEMU loads no raw file that is larger than the machine's RAM: 16 KiB, wherever in the flash it is for.
 pub(super) const PIECE: usize = 1 << 14;
+
+/// The micro:bit with the memory of [`ROOMY`], byte by byte.
+const ROOMY_ARGUMENTS: [&str; 6] =
+    ["-M", "microbit", "-global", "nrf51-soc.flash-size=16777216", "-global", "nrf51-soc.sram-size=262144"];
 
 /// A board in QEMU.
 #[derive(Clone, Copy, Debug)]
@@ -29,6 +33,7 @@ impl Machine {
     pub fn of(board: &Board) -> Result<Self, EmulateError> {
         let (program, arguments): (_, &[_]) = match *board {
             MICROBIT => ("qemu-system-arm", &["-M", "microbit"]),
+            ROOMY => ("qemu-system-arm", &ROOMY_ARGUMENTS),
             // Revision B starts where the flash of the real board does.
             HIFIVE1 => ("qemu-system-riscv32", &["-M", "sifive_e,revb=true", "-bios", "none"]),
             Board { name: board, chip, .. } => return Err(EmulateError::NoMachine { board, chip }),

@@ -43,6 +43,8 @@ pub(super) struct Parts<'a, N, T, S> {
     pub(super) root: u32,
     pub(super) depth: u8,
     pub(super) arithmetic: Arithmetic,
+    /// Where ids stand in records: the bits below them, of the material.
+    pub(super) material_bits: Option<u8>,
     pub(super) nodes: N,
     pub(super) triangles: T,
     /// The vertices that triangles share and their three each, where they have no records.
@@ -113,7 +115,7 @@ pub(super) fn write<K: Kernel>(
     };
     let lights: Vec<_> = model.lights.iter().map(|light| header::light(light, grid)).collect();
     let wide_ids = model.triangles.len() + model.spheres.len() > 1 << 16;
-    let ids = [parts.ids, parts.sphere_ids].concat();
+    let ids = if parts.material_bits.is_some() { Vec::new() } else { [parts.ids, parts.sphere_ids].concat() };
     // The largest index is kept for flat triangles.
     let wide_normals = normals.len() >= 1 << 16;
     let needs = header::needs(model, parts.materials, parts.lustres)
@@ -121,7 +123,8 @@ pub(super) fn write<K: Kernel>(
         .with(Need::SharedVertices, parts.shared.is_some())
         .with(Need::SmoothNormals, !corners.is_empty())
         .with(Need::Spheres, !parts.sphere_ids.is_empty())
-        .with(Need::WideIds, wide_ids)
+        .with(Need::Ids, parts.material_bits.is_none())
+        .with(Need::WideIds, wide_ids && parts.material_bits.is_none())
         .with(Need::WideNormals, wide_normals);
     let needs = parts.paint.needs(needs, model.render.filter);
     let wide_uvs = needs.has(Need::WideUvs);
@@ -153,6 +156,7 @@ pub(super) fn write<K: Kernel>(
         },
         file_triangles: model.triangles.len() as u32,
         file_spheres: model.spheres.len() as u32,
+        material_bits: parts.material_bits.unwrap_or(0),
         arithmetic: parts.arithmetic,
         source: SourceGrid { origin_bits: grid.origin.to_array().map(f64::to_bits), scale_bits: grid.scale.to_bits() },
     };

@@ -60,7 +60,8 @@ fn inspect() {
     }
     assert_eq!(of_scene["blob_bytes"], folder.read("scene.blob").len());
     assert_eq!((&of_scene["triangles"], &of_scene["grid_bits"]), (&1.into(), &29.into()));
-    assert_eq!(of_scene["needs"], serde_json::json!(["point lights", "shadows", "sRGB output", "RGB888 output"]));
+    let needs = ["point lights", "shadows", "sRGB output", "RGB888 output", "triangles with records"];
+    assert_eq!(of_scene["needs"], serde_json::json!(needs));
     // A blob does not tell why triangles were left out.
     assert_eq!(of_blob.insert("degenerates".into(), of_scene["degenerates"].clone()), Some(Value::Null));
     assert_eq!(of_blob, of_scene);

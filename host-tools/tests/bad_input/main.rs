@@ -8,6 +8,7 @@ mod blobs;
 mod closeness;
 mod command;
 mod decimation;
+mod external;
 mod good;
 mod kernels;
 mod outputs;

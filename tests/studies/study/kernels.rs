@@ -105,7 +105,7 @@ fn each_hit<K: Kernel, T: Send>(
 
 fn seen<K: Kernel>(blob: &Blob) -> Vec<u32> {
     let scene = view::<K>(blob);
-    each_hit(&scene, |_, hit| scene.bvh.ids.get(hit)).map(|id| id.unwrap_or(NONE)).collect()
+    each_hit(&scene, |_, hit| scene.bvh.id(hit)).map(|id| id.unwrap_or(NONE)).collect()
 }
 
 /// Shadow rays that leave a convex closed mesh, from a face that is seen from outside and faces the light.

@@ -71,7 +71,7 @@ fn header(blob: &Blob, model: &Model) -> Checked {
         model.render.ambient != DVec3::ZERO,
         !linear,
         linear,
-        model.triangles.len() + model.spheres.len() > 65_536,
+        header.needs >> 32 & 1 == 1 && model.triangles.len() + model.spheres.len() > 65_536,
         blob.normals.len() >= 65_536,
         false,
         false,
@@ -90,7 +90,12 @@ fn header(blob: &Blob, model: &Model) -> Checked {
     let parallel = matches!(model.camera.projection, Projection::Orthographic { .. });
     let pixels = u64::from(parallel) << 19 | u64::from(model.render.samples > 1) << 20 | 1 << (25 + format);
     let (has, shared) = (!blob.triangles.is_empty(), header.needs >> 31 & 1 == 1);
-    let layout = u64::from(has && !shared) << 29 | u64::from(has && shared) << 31;
+    let bits = |count: usize| count.next_power_of_two().ilog2();
+    // The largest material has all its bits set.
+    let room = blob.kernel.material_most.count_ones();
+    let beside = !shared && blob.spheres.is_empty() && bits(model.triangles.len()) + bits(blob.materials.len()) <= room;
+    let layout = u64::from(has && !shared) << 29 | u64::from(has && shared) << 31 | u64::from(!beside) << 32;
+    rule(!beside || header.material_bits == bits(blob.materials.len()), "bits of materials")?;
     rule(header.needs == needs | pixels | layout, "needs")?;
     rule(header.format == format, "format")?;
     rule(header.samples == u64::from(model.render.samples), "samples")?;

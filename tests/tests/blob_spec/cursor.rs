@@ -83,6 +83,7 @@ impl Cursor<'_> {
             counts: [(); 13].map(|()| self.varint(32) as usize),
             file_triangles: self.varint(32),
             file_spheres: self.varint(32),
+            material_bits: self.unsigned(1) as u32,
             arithmetic: [(); 4].map(|()| self.unsigned(1) as u8),
             origin: self.three(|c| f64::from_bits(c.varint(64))),
             scale: f64::from_bits(self.varint(64)),

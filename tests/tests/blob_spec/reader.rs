@@ -85,6 +85,8 @@ pub(crate) struct Header {
     pub(crate) counts: [usize; 13],
     pub(crate) file_triangles: u64,
     pub(crate) file_spheres: u64,
+    /// Of a record's material number, where ids are above them.
+    pub(crate) material_bits: u32,
     /// C, D, E, epsilon.
     pub(crate) arithmetic: [u8; 4],
     pub(crate) origin: [f64; 3],
@@ -243,7 +245,7 @@ pub(crate) fn read(bytes: &[u8]) -> Blob {
         header.counts;
     let wide = |bit: u32| if header.needs >> bit & 1 == 1 { 4 } else { 2 };
     let nodes = cursor.section(node_count, |c| c.node(kernel));
-    let triangles = if header.needs >> 31 & 1 == 1 {
+    let mut triangles: Vec<Triangle> = if header.needs >> 31 & 1 == 1 {
         let wide = |count: usize| if count > 1 << 16 { 4 } else { 2 };
         let corners = cursor.section(triangle_count, |c| c.three(|c| c.unsigned(wide(vertex_count)) as usize));
         let vertices = cursor.section(vertex_count, |c| c.three(|c| c.signed(kernel.short)));
@@ -262,7 +264,15 @@ pub(crate) fn read(bytes: &[u8]) -> Blob {
         radius: c.signed(kernel.short),
         material: c.unsigned(kernel.short) as u32,
     });
-    let ids = cursor.section(triangle_count + sphere_count, |c| c.unsigned(wide(8)) as u32);
+    let apart = header.needs >> 32 & 1 == 1;
+    let with_id = if apart { triangle_count + sphere_count } else { 0 };
+    let mut ids = cursor.section(with_id, |c| c.unsigned(wide(8)) as u32);
+    if !apart {
+        for triangle in &mut triangles {
+            ids.push(triangle.material >> header.material_bits);
+            triangle.material &= (1 << header.material_bits) - 1;
+        }
+    }
     let flat = if wide(9) == 4 { u32::MAX } else { u16::MAX.into() };
     let corners = cursor.section(smooth, |c| {
         let indices = c.three(|c| c.unsigned(wide(9)) as u32);

@@ -5,12 +5,12 @@ use core_rt::kernel::Kernel;
 use core_rt::profile::Need;
 use core_rt::record::{Checker, Light, Lustre, Reach};
 use core_rt::space::Space;
-use tests::blobs::{Draft, sample};
+use tests::blobs::{Draft, sample, sample_with_ids_in_records};
 use zerocopy::{FromZeros, IntoBytes};
 
 use crate::{for_every_kernel, refused, verdict};
 
-for_every_kernel!(broken_triangles, broken_shading);
+for_every_kernel!(broken_triangles, broken_ids_in_records, broken_shading);
 
 fn broken_triangles<K: Kernel>() {
     let third = BlobError::Triangle { index: 2 };
@@ -54,6 +54,27 @@ fn broken_triangles<K: Kernel>() {
     draft.triangles[2] = K::Triangle::new_zeroed();
     let said = verdict::<K>(draft.write().bytes());
     assert!(matches!(said, Err(BlobError::Bounds { .. } | BlobError::Triangle { index: 2 })), "{said:?}");
+}
+
+fn broken_ids_in_records<K: Kernel>() {
+    let good = sample_with_ids_in_records::<K>(false);
+    assert_eq!(verdict::<K>(good.bytes()), Ok(()));
+    let renumbered = |number: u32| {
+        let mut draft = Draft::<K>::read(good.bytes()).expect("a good blob");
+        assert!(draft.ids.is_empty() && draft.header.material_bits == 1);
+        draft.triangles[2] = draft.triangle(&K::vertices(&draft.triangles[2]), number).expect("it can be packed");
+        verdict::<K>(draft.write().bytes())
+    };
+    assert_eq!(renumbered(4 << 1 | 1), Ok(()));
+    assert_eq!(renumbered(5 << 1), Err(BlobError::Triangle { index: 2 }), "an id that is not in the file");
+    let mut draft = Draft::<K>::read(good.bytes()).expect("a good blob");
+    draft.header.material_bits = 31;
+    assert_eq!(verdict::<K>(draft.write().bytes()), Err(BlobError::Sections), "no bits are left for ids");
+    draft.header.material_bits = 2;
+    assert!(
+        matches!(verdict::<K>(draft.write().bytes()), Err(BlobError::Triangle { .. })),
+        "materials that are not there"
+    );
 }
 
 /// The place in the sample of the light of a kind.

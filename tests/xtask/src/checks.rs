@@ -30,7 +30,8 @@ pub(crate) fn steps(long: bool) -> Vec<Step> {
         Step::new("lints", Task::new("cargo clippy --workspace --all-targets -- -D warnings")).needing(&[CLIPPY]),
         Step::new(
             "documentation",
-            Task::new("cargo doc --no-deps -p core-rt -p float-rt -p host-tools").with("RUSTDOCFLAGS", "-D warnings"),
+            Task::new("cargo doc --no-deps -p core-rt -p float-rt -p host-tools -p chip-fit")
+                .with("RUSTDOCFLAGS", "-D warnings"),
         ),
         Step::new(
             "the cores for the chips",
@@ -47,8 +48,10 @@ pub(crate) fn steps(long: bool) -> Vec<Step> {
             steps.push(Step::new(format!("lints of {package}{features}"), Task::new(&line)).needing(tools));
         }
         if package == "firmware-cortexm" {
-            let line = format!("cargo clippy -p {package} --target {target} --features pico,rtt -- -D warnings");
-            steps.push(Step::new("lints of the Pico's firmware", Task::new(&line)).needing(tools));
+            for (features, of) in [("pico,rtt", "the Pico's firmware"), ("roomy", "the roomy board's firmware")] {
+                let line = format!("cargo clippy -p {package} --target {target} --features {features} -- -D warnings");
+                steps.push(Step::new(format!("lints of {of}"), Task::new(&line)).needing(tools));
+            }
         }
         let line = format!("cargo clippy -p probe --target {target} -- -D warnings");
         steps.push(Step::new(format!("lints of the probe for {target}"), Task::new(&line)).needing(tools));
@@ -71,6 +74,11 @@ pub(crate) fn steps(long: bool) -> Vec<Step> {
         .needing(&[CHROMIUM]),
         Step::new("instruction counts", Task::new("cargo test -p tests --profile checked --test qemu_plugin"))
             .needing(&[QEMU]),
+        // What it lacks, its tests skip and say.
+        Step::new(
+            "chips, and the boards' firmware for probe-rs",
+            Task::new("cargo test -p chip-fit --profile checked"),
+        ),
         Step::new("all of tests, optimised and overflow-checked", test("cargo test -p tests --profile checked")),
         Step::new("goldens, release", Task::new("cargo test -p tests --release --test goldens")),
     ]);

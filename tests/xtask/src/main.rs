@@ -119,6 +119,10 @@ fn perform(verb: Verb) -> Result<(), String> {
                 ))
                 .with("INTRAY_BLESS", "1"),
             ),
+            Step::new(
+                "the README's example of chips",
+                Task::new("cargo test -p chip-fit --profile checked --test readme").with("INTRAY_BLESS", "1"),
+            ),
             Step::new("what changed", Task::new("git --no-pager diff --stat -- tests README.md docs")),
             Step::new("what is new", Task::new("git status --short -- tests README.md docs")),
         ])
