@@ -38,8 +38,9 @@ impl<P: Profile> Bvh<'_, P> {
             let start = usize::from(part.y) * stride + usize::from(part.x);
             let hits = hits.get_mut(start..).unwrap_or_default();
             let part = Tile { x: tile.x + part.x, y: tile.y + part.y, ..part };
-            if let Some(beam) = camera.and_then(|camera| BeamOf::<P>::new(camera, part)) {
-                self.together(&beam, &ray, part, Rows { hits, stride }, stack, stats);
+            // By reference: it is not small, and the stack would have it twice.
+            if let Some(beam) = &camera.and_then(|camera| BeamOf::<P>::new(camera, part)) {
+                self.together(beam, &ray, part, Rows { hits, stride }, stack, stats);
                 continue;
             }
             for (y, row) in (part.y..).zip(hits.chunks_mut(stride.max(1)).take(part.height.into())) {
@@ -50,6 +51,7 @@ impl<P: Profile> Bvh<'_, P> {
         }
     }
 
+    #[inline(never)]
     fn together(
         &self,
         beam: &BeamOf<P>,
@@ -72,9 +74,10 @@ impl<P: Profile> Bvh<'_, P> {
         while let Some(leaf) = next.and_then(|child| self.entered(beam, child, limit, stack, stats)) {
             let Child::Leaf { first, count } = Child::unpack(leaf.get()) else { return };
             for index in first..first + count {
-                let Some(vertices) = self.triangles.vertices(index) else { continue };
+                let vertices = self.triangles.vertices(index);
+                let Some(vertices) = &vertices else { continue };
                 stats.triangle();
-                match beam.footprint(&vertices, &mut edges) {
+                match beam.footprint(vertices, &mut edges) {
                     Footprint::Nothing => {}
                     Footprint::Edges => Drawing::new(self, &edges, ray, tile, index, &mut found).draw(),
                     Footprint::Unknown => self.try_all(ray, tile, index, &mut found),

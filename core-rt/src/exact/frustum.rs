@@ -14,7 +14,8 @@
 //! # Edges
 //! With P, Q and R the corners of a triangle less the origin, det = D . N and N = P x Q + Q x R + R x P, the ray meets the
 //! triangle iff D . (P x Q), D . (Q x R) and D . (R x P) have the sign of P . N, or are 0, and det has it; then t = P . N / det.
-//! These are the numbers of the [triangle test](super::triangle), up to sign. 1 / t is linear in D. `docs/EXACTNESS.md` has the bounds step by step.
+//! These are the numbers of the triangle test, up to sign. 1 / t is linear in D. `docs/EXACTNESS.md` has the bounds step by
+//! step.
 
 use super::boxes::BoxNode;
 use super::width::{Distance, Wide, Width};
@@ -142,6 +143,7 @@ fn rounded<T: Word>(value: T, shift: u32) -> i32 {
 }
 
 impl<W: Width> Beam<Exact<W>> for Frustum<W> {
+    #[inline(never)]
     fn new(camera: &Camera<W::Word>, tile: Tile) -> Option<Self> {
         let [x, y] = [tile.width / 2, tile.height / 2];
         let (fraction_bits, [middle, right, down]) = camera.linear(tile.x + x, tile.y + y);
@@ -171,18 +173,24 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
         let middle = middle.map(i32::abs);
         let axis =
             if middle[0] >= middle[1] && middle[0] >= middle[2] { 0 } else { 1 + usize::from(middle[2] > middle[1]) };
-        let is_down = corners[0][axis] < 0;
-        let across = [(axis + 1) % 3, (axis + 2) % 3];
+        // That axis first.
+        let turned = |[x, y, z]: Triple<i32>| match axis {
+            0 => [x, y, z],
+            1 => [y, z, x],
+            _ => [z, x, y],
+        };
+        let is_down = turned(corners[0])[0] < 0;
         let (mut low, mut high, mut largest, mut smallest) = ([i32::MAX; 2], [i32::MIN; 2], 0, i32::MAX);
-        for corner in &corners {
-            let depth = if is_down { -corner[axis] } else { corner[axis] };
+        for corner in corners {
+            let [along, across @ ..] = turned(corner);
+            let depth = if is_down { -along } else { along };
             if depth < 4 * DEPTH_MIN {
                 return None;
             }
             (largest, smallest) = (depth.max(largest), depth.min(smallest));
             let r = reciprocal(depth as u32);
             for which in [0, 1] {
-                let v = corner[across[which]];
+                let v = across[which];
                 if v.abs() >= 2 * depth {
                     return None;
                 }
@@ -199,17 +207,15 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
         {
             return None;
         }
+        // What low planes are counted from, and high ones.
         let origin = camera.eye();
-        let up = |axis: usize| -((-origin[axis]) >> Self::COARSE_BITS).low_i32();
-        let below = |axis: usize| (origin[axis] >> Self::COARSE_BITS).low_i32() - i32::from(Self::COARSE_BITS > 0);
+        let up = turned(origin.map(|c| -((-c) >> Self::COARSE_BITS).low_i32()));
+        let below = turned(origin.map(|c| (c >> Self::COARSE_BITS).low_i32() - i32::from(Self::COARSE_BITS > 0)));
         let side = |which: usize, slope: i32, is_low: bool| {
             let slope = if is_down { -slope } else { slope };
-            // What low planes are counted from, and high ones.
-            let from = |axis: usize, is_low: bool| if is_low { up(axis) } else { below(axis) };
-            let u_is_low = (slope < 0) == is_low;
-            let offset =
-                (from(across[which], is_low) << SLOPE_BITS).wrapping_sub(slope.wrapping_mul(from(axis, u_is_low)));
-            Side { slope, offset }
+            let v = if is_low { up[1 + which] } else { below[1 + which] };
+            let u = if (slope < 0) == is_low { up[0] } else { below[0] };
+            Side { slope, offset: (v << SLOPE_BITS).wrapping_sub(slope.wrapping_mul(u)) }
         };
         let sides =
             [0, 1].map(|which| [side(which, high[which] + margin, true), side(which, low[which] - margin, false)]);
@@ -230,7 +236,7 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
             axis,
             is_down,
             largest: (largest >> 2) + 2 + (spread >> fraction_bits),
-            depth_origin: [up(axis), below(axis)],
+            depth_origin: [up[0], below[0]],
             sides,
         })
     }
@@ -321,7 +327,7 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
         }
         edges.nearness = self.linear(towards);
         edges.shift = nearness_shift as u32;
-        edges.band = self.off(towards) + 6 * self.length;
+        edges.band = self.off(towards) + 6 * self.length + LINEAR_ERROR;
         Footprint::Edges
     }
 
