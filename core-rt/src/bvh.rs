@@ -83,13 +83,14 @@ pub trait Intersect<K: Kernel> {
     fn any(&self, ray: &K::Ray, stack: &mut Stack<K>, stats: &mut impl Stats, blocks: impl FnMut(u32) -> bool) -> bool;
 
     /// The nearest hits of a tile of rays, row by row, given the ray of a pixel. Where they are those of a camera, from its eye,
-    /// a kernel that can may walk the tree once for many of them.
+    /// a kernel that can may walk the tree once for many of them, with the room of [`tile::ROOM`](crate::tile::ROOM) bytes.
     fn closest_tile(
         &self,
         camera: Option<&Camera<K::Word>>,
         ray: impl Fn([u16; 2]) -> Option<K::Ray>,
         tile: Tile,
         hits: &mut [u32],
+        room: &mut [u8],
         stack: &mut Stack<K>,
         stats: &mut impl Stats,
     );
@@ -350,10 +351,11 @@ impl<P: Profile> Intersect<P::Kernel> for Bvh<'_, P> {
         ray: impl Fn([u16; 2]) -> Option<RayOf<P>>,
         tile: Tile,
         hits: &mut [u32],
+        room: &mut [u8],
         stack: &mut Stack<P::Kernel>,
         stats: &mut impl Stats,
     ) {
-        self.tile(camera, ray, tile, hits, stack, stats);
+        self.tile(camera, ray, tile, hits, room, stack, stats);
     }
 }
 

@@ -169,12 +169,17 @@ pub fn render_tile<'w, P: Profile>(
     let format = P::NEEDS.format().unwrap_or(scene.frame.format);
     let count = tile.pixels();
     let capacity = workspace.hits.len().min(workspace.pixels.len() / format.bytes());
-    let (Some(hits), Some(pixels)) =
-        (workspace.hits.get_mut(..count), workspace.pixels.get_mut(..count * format.bytes()))
-    else {
+    let room = &mut *workspace.pixels;
+    let (Some(hits), true) = (workspace.hits.get_mut(..count), room.len() >= count * format.bytes()) else {
         return Err(RenderError::Tile { capacity, needed: count });
     };
     let places = tile.places();
+    if !P::NEEDS.has(Need::Supersampling) {
+        // What pixels are written to is room for depths before.
+        let ray = |[x, y]: [u16; 2]| scene.primary(&scene.camera, x, y);
+        scene.bvh.closest_tile(scene.shared_origin(), ray, tile, hits, room, stack, stats);
+    }
+    let pixels = room.get_mut(..count * format.bytes()).unwrap_or_default();
     if P::NEEDS.has(Need::Supersampling) {
         // One sample goes the same way: it is in the middle, and the mean of itself.
         let samples = scene.frame.samples;
@@ -207,7 +212,6 @@ pub fn render_tile<'w, P: Profile>(
         }
     } else {
         let ray = |[x, y]: [u16; 2]| scene.primary(&scene.camera, x, y);
-        scene.bvh.closest_tile(scene.shared_origin(), ray, tile, hits, stack, stats);
         for ((pixel, &hit), place) in pixels.chunks_exact_mut(format.bytes()).zip(&*hits).zip(places) {
             let seen = seen(scene, ray(place).as_ref(), hit, stack, branches, stats);
             format.put(seen, transfer, place, pixel);

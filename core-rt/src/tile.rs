@@ -15,6 +15,9 @@ use crate::render::Tile;
 /// Pixels a side that walk together, at most.
 pub const SIDE: u16 = 16;
 
+/// The bytes that the walk of a tile needs for its depths, wherever they lie: two a pixel, and one to begin at an even address.
+pub const ROOM: usize = 2 * SIDE as usize * SIDE as usize + 1;
+
 /// The rays of a tile, at most [`SIDE`] pixels wide and high.
 ///
 /// Depth is counted along one axis, that along which the middle of the tile looks: distances to boxes are coordinates.

@@ -11,7 +11,7 @@ use core_rt::render::Tile;
 use core_rt::scene::{MAX_DEPTH, Scene};
 use core_rt::section::Integers;
 use core_rt::stats::NoStats;
-use core_rt::tile::{Beam, Edges, Footprint, Linear, SIDE};
+use core_rt::tile::{Beam, Edges, Footprint, Linear, ROOM, SIDE};
 use host_tools::prepare::{self, Options};
 use host_tools::tree::{self, TreeOptions};
 use rayon::prelude::*;
@@ -33,7 +33,7 @@ fn together<P: Profile>(
     let mut picture = vec![7; usize::from(size[0]) * usize::from(size[1])];
     for tile in Tile::of(size, tile) {
         let mut hits = vec![7; tile.pixels()];
-        bvh.closest_tile(camera, &ray, tile, &mut hits, &mut stack, &mut NoStats);
+        bvh.closest_tile(camera, &ray, tile, &mut hits, &mut [0; ROOM], &mut stack, &mut NoStats);
         for ([x, y], hit) in tile.places().zip(hits) {
             picture[usize::from(y) * usize::from(size[0]) + usize::from(x)] = hit;
         }

@@ -6,17 +6,21 @@ use crate::kernel::NONE;
 use crate::num::{BitLength, Triple};
 use crate::profile::Profile;
 use crate::render::Tile;
-use crate::tile::{Beam, Edges, Linear, SIDE};
+use crate::tile::{Beam, Edges, Linear, ROOM, SIDE};
+
+/// A nearness a pixel, in rows of [`SIDE`].
+pub(super) type Nearnesses = [i16; PIXELS];
+const _: () = assert!(size_of::<Nearnesses>() < ROOM);
 
 /// The pixels of the largest tile.
-pub(super) const PIXELS: usize = 1 << (2 * SIDE_BITS);
+const PIXELS: usize = 1 << (2 * SIDE_BITS);
 const SIDE_BITS: u32 = SIDE.trailing_zeros();
 
 /// Pixels a side of a block, which is left out at once where a triangle does not reach it.
 const BLOCK: i32 = 4;
 
 /// The nearness of no hit; others are not negative.
-pub(super) const NOWHERE: i16 = i16::MIN;
+const NOWHERE: i16 = i16::MIN;
 
 /// The bits of a nearness for which there is room to be as near again, twice.
 const NEARNESS_BITS: u32 = 13;
@@ -27,20 +31,31 @@ pub(super) const UNKNOWN: i32 = 1 << 17;
 /// A tile's hits so far.
 pub(super) struct Found<'h> {
     /// From the tile's first pixel on.
-    pub(super) hits: &'h mut [u32],
+    hits: &'h mut [u32],
     /// From row to row.
-    pub(super) stride: usize,
+    stride: usize,
     /// The first pixel without a hit, in rows of [`SIDE`].
-    pub(super) open: usize,
-    /// How near each hit is, likewise; [`i16::MAX`] for what is no pixel of the tile.
-    pub(super) nearness: [i16; PIXELS],
+    open: usize,
+    /// How near each hit is; [`i16::MAX`] for what is no pixel of the tile.
+    nearness: &'h mut Nearnesses,
     /// By what a nearness is shifted to the right; known from the first triangle on.
-    pub(super) shift: Option<u32>,
+    shift: Option<u32>,
     /// By what they may be wrong.
     pub(super) band: i32,
 }
 
-impl Found<'_> {
+impl<'h> Found<'h> {
+    /// Nothing yet.
+    pub(super) fn new(hits: &'h mut [u32], stride: usize, nearness: &'h mut Nearnesses, tile: Tile) -> Self {
+        nearness.fill(i16::MAX);
+        let rows = hits.chunks_mut(stride.max(1)).zip(nearness.as_chunks_mut::<{ SIDE as usize }>().0);
+        for (hits, nearness) in rows.take(tile.height.into()) {
+            hits.get_mut(..tile.width.into()).unwrap_or_default().fill(NONE);
+            nearness.get_mut(..tile.width.into()).unwrap_or_default().fill(NOWHERE);
+        }
+        Self { hits, stride, open: 0, nearness, shift: None, band: 0 }
+    }
+
     /// Whether every pixel has a hit since this was last asked.
     #[inline(always)]
     pub(super) fn closes(&mut self) -> bool {

@@ -2,7 +2,9 @@
 
 use core::num::NonZeroU32;
 
-use super::drawing::{Drawing, Found, NOWHERE, PIXELS, UNKNOWN};
+use zerocopy::FromBytes;
+
+use super::drawing::{Drawing, Found, Nearnesses, UNKNOWN};
 use super::{Bvh, Child, DistanceOf, Intersect, RayOf, Stack, waiting};
 use crate::camera::Camera;
 use crate::kernel::{Kernel, NONE};
@@ -13,13 +15,6 @@ use crate::tile::{Beam, Edges, Footprint, SIDE};
 
 pub(super) type BeamOf<P> = <<P as Profile>::Kernel as Kernel>::Beam;
 
-/// The hits of a tile, from its first pixel on.
-struct Rows<'h> {
-    hits: &'h mut [u32],
-    /// From row to row.
-    stride: usize,
-}
-
 impl<P: Profile> Bvh<'_, P> {
     /// See [`Intersect::closest_tile`].
     pub(super) fn tile(
@@ -28,19 +23,23 @@ impl<P: Profile> Bvh<'_, P> {
         ray: impl Fn([u16; 2]) -> Option<RayOf<P>>,
         tile: Tile,
         hits: &mut [u32],
+        room: &mut [u8],
         stack: &mut Stack<P::Kernel>,
         stats: &mut impl Stats,
     ) {
         // A tile knows triangles alone.
         let camera = camera.filter(|_| !P::NEEDS.has(Need::Spheres) || self.spheres.is_empty());
+        let start = room.as_ptr().align_offset(align_of::<Nearnesses>());
+        let room = room.get_mut(start..).and_then(|room| Nearnesses::mut_from_prefix(room).ok());
+        let (camera, mut room) = (camera.filter(|_| room.is_some()), room.map(|(room, _)| room));
         let stride = usize::from(tile.width);
         for part in Tile::of([tile.width, tile.height], [SIDE; 2]) {
             let start = usize::from(part.y) * stride + usize::from(part.x);
             let hits = hits.get_mut(start..).unwrap_or_default();
             let part = Tile { x: tile.x + part.x, y: tile.y + part.y, ..part };
             // By reference: it is not small, and the stack would have it twice.
-            if let Some(beam) = &camera.and_then(|camera| BeamOf::<P>::new(camera, part)) {
-                self.together(beam, &ray, part, Rows { hits, stride }, stack, stats);
+            if let (Some(beam), Some(nearness)) = (&camera.and_then(|c| BeamOf::<P>::new(c, part)), &mut room) {
+                self.together(beam, &ray, part, Found::new(hits, stride, nearness, part), stack, stats);
                 continue;
             }
             for (y, row) in (part.y..).zip(hits.chunks_mut(stride.max(1)).take(part.height.into())) {
@@ -57,16 +56,10 @@ impl<P: Profile> Bvh<'_, P> {
         beam: &BeamOf<P>,
         ray: &impl Fn([u16; 2]) -> Option<RayOf<P>>,
         tile: Tile,
-        Rows { hits, stride }: Rows<'_>,
+        mut found: Found<'_>,
         stack: &mut Stack<P::Kernel>,
         stats: &mut impl Stats,
     ) {
-        let mut found = Found { hits, stride, open: 0, nearness: [i16::MAX; PIXELS], shift: None, band: 0 };
-        let rows = found.hits.chunks_mut(stride.max(1)).zip(found.nearness.as_chunks_mut::<{ SIDE as usize }>().0);
-        for (hits, nearness) in rows.take(tile.height.into()) {
-            hits.get_mut(..tile.width.into()).unwrap_or_default().fill(NONE);
-            nearness.get_mut(..tile.width.into()).unwrap_or_default().fill(NOWHERE);
-        }
         let mut edges = Edges::default();
         let mut limit = beam.reach();
         let mut next = Some(self.root);
