@@ -84,6 +84,7 @@ pub trait Intersect<K: Kernel> {
 
     /// The nearest hits of a tile of rays, row by row, given the ray of a pixel. Where they are those of a camera, from its eye,
     /// a kernel that can may walk the tree once for many of them, with the room of [`tile::ROOM`](crate::tile::ROOM) bytes.
+    #[expect(clippy::too_many_arguments, reason = "the storage of a tile has three parts")]
     fn closest_tile(
         &self,
         camera: Option<&Camera<K::Word>>,
@@ -316,12 +317,12 @@ impl<P: Profile> Intersect<P::Kernel> for Bvh<'_, P> {
         let path = P::Kernel::path(ray);
         let mut limit = P::Kernel::reach(ray, &path);
         self.walk(ray, &path, stack, stats, |index, primitive| {
-            if let Some(depth) = primitive.intersect(ray) {
-                if best.as_ref().is_none_or(|best| self.nearer((index, &depth), (hit, best))) {
-                    limit = P::Kernel::limit(&path, &depth);
-                    best = Some(depth);
-                    hit = index;
-                }
+            if let Some(depth) = primitive.intersect(ray)
+                && best.as_ref().is_none_or(|best| self.nearer((index, &depth), (hit, best)))
+            {
+                limit = P::Kernel::limit(&path, &depth);
+                best = Some(depth);
+                hit = index;
             }
             Some(limit)
         });

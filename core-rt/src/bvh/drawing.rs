@@ -184,11 +184,10 @@ impl<'a, 'h, 'b, P: Profile, R: Fn([u16; 2]) -> Option<RayOf<P>>> Drawing<'a, 'h
         let place = [x as usize, y as usize];
         let nearer = nearness - i32::from(self.found.nearness[(place[1] << SIDE_BITS | place[0]) % PIXELS]);
         let is_nearer = nearer > self.spread;
-        if nearer < -self.spread || (!(is_certain && is_nearer) && !self.replaces(place, is_nearer)) {
-            return;
+        if nearer >= -self.spread && (is_certain && is_nearer || self.replaces(place, is_nearer)) {
+            self.found.set(place, self.index, nearness as i16);
+            self.changed = true;
         }
-        self.found.set(place, self.index, nearness as i16);
-        self.changed = true;
     }
 
     /// By the pixel's ray: whether the triangle is hit, where that is all there is to know; else also whether it is the nearest.

@@ -8,7 +8,7 @@ use super::drawing::{Drawing, Found, Nearnesses, UNKNOWN};
 use super::{Bvh, Child, DistanceOf, Intersect, RayOf, Stack, waiting};
 use crate::camera::Camera;
 use crate::kernel::{Kernel, NONE};
-use crate::profile::{Need, Profile};
+use crate::profile::{Need, Needs, Profile};
 use crate::render::Tile;
 use crate::stats::Stats;
 use crate::tile::{Beam, Edges, Footprint, SIDE};
@@ -16,7 +16,12 @@ use crate::tile::{Beam, Edges, Footprint, SIDE};
 pub(super) type BeamOf<P> = <<P as Profile>::Kernel as Kernel>::Beam;
 
 impl<P: Profile> Bvh<'_, P> {
+    /// Whether tiles walk together. They know triangles alone; and a profile that is not of all scenes has spheres where its
+    /// scene has some.
+    const HAS_TILES: bool = !P::NEEDS.has(Need::Spheres) || P::NEEDS.bits() == Needs::ALL.bits();
+
     /// See [`Intersect::closest_tile`].
+    #[expect(clippy::too_many_arguments, reason = "the storage of a tile has three parts")]
     pub(super) fn tile(
         &self,
         camera: Option<&Camera<<P::Kernel as Kernel>::Word>>,
@@ -27,8 +32,7 @@ impl<P: Profile> Bvh<'_, P> {
         stack: &mut Stack<P::Kernel>,
         stats: &mut impl Stats,
     ) {
-        // A tile knows triangles alone.
-        let camera = camera.filter(|_| !P::NEEDS.has(Need::Spheres) || self.spheres.is_empty());
+        let camera = camera.filter(|_| Self::HAS_TILES && self.spheres.is_empty());
         let start = room.as_ptr().align_offset(align_of::<Nearnesses>());
         let room = room.get_mut(start..).and_then(|room| Nearnesses::mut_from_prefix(room).ok());
         let (camera, mut room) = (camera.filter(|_| room.is_some()), room.map(|(room, _)| room));
