@@ -32,7 +32,13 @@ impl<P: Profile> Bvh<'_, P> {
         stack: &mut Stack<P::Kernel>,
         stats: &mut impl Stats,
     ) {
-        let camera = camera.filter(|_| Self::HAS_TILES && self.spheres.is_empty());
+        let one = |place, stack: &mut _, stats: &mut _| ray(place).map_or(NONE, |ray| self.closest(&ray, stack, stats));
+        if !Self::HAS_TILES || !self.spheres.is_empty() {
+            for (hit, place) in hits.iter_mut().zip(tile.places()) {
+                *hit = one(place, stack, stats);
+            }
+            return;
+        }
         let start = room.as_ptr().align_offset(align_of::<Nearnesses>());
         let room = room.get_mut(start..).and_then(|room| Nearnesses::mut_from_prefix(room).ok());
         let (camera, mut room) = (camera.filter(|_| room.is_some()), room.map(|(room, _)| room));
@@ -48,7 +54,7 @@ impl<P: Profile> Bvh<'_, P> {
             }
             for (y, row) in (part.y..).zip(hits.chunks_mut(stride.max(1)).take(part.height.into())) {
                 for (x, hit) in (part.x..).zip(row.iter_mut().take(part.width.into())) {
-                    *hit = ray([x, y]).as_ref().map_or(NONE, |ray| self.closest(ray, stack, stats));
+                    *hit = one([x, y], stack, stats);
                 }
             }
         }
