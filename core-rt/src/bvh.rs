@@ -20,7 +20,7 @@ use heapless::VecView;
 use crate::camera::Camera;
 use crate::kernel::{ANY_OCTANT, Bounds, Kernel, NONE};
 use crate::mesh::Mesh;
-use crate::profile::{Need, Profile};
+use crate::profile::{Need, Prefer, Profile};
 use crate::render::Tile;
 use crate::section::Integers;
 use crate::stats::Stats;
@@ -222,7 +222,7 @@ impl<'a, P: Profile> Bvh<'a, P> {
     }
 
     /// The first leaf at or below `child`, or below what waits, that the ray enters before the limit, packed: a leaf is not
-    /// word 0. One copy an octant, of the descent alone: it is most of the work and little code.
+    /// word 0. One copy an octant, of the descent alone: it is most of the work and little code. One for all where size is preferred.
     #[inline(always)]
     fn leaf(
         &self,
@@ -233,6 +233,9 @@ impl<'a, P: Profile> Bvh<'a, P> {
         stack: &mut Stack<P::Kernel>,
         stats: &mut impl Stats,
     ) -> Option<NonZeroU32> {
+        if P::PREFER == Prefer::Size {
+            return self.leaf_in::<ANY_OCTANT>(path, child, limit, stack, stats);
+        }
         match octant {
             0 => self.leaf_in::<0>(path, child, limit, stack, stats),
             1 => self.leaf_in::<1>(path, child, limit, stack, stats),
@@ -298,6 +301,15 @@ impl<'a, P: Profile> Bvh<'a, P> {
     }
 }
 
+/// The ray, prepared for the boxes of [`Bvh::leaf`].
+#[inline(always)]
+fn path<P: Profile>(ray: &RayOf<P>) -> PathOf<P> {
+    match P::PREFER {
+        Prefer::Speed => P::Kernel::path(ray),
+        Prefer::Size => P::Kernel::path_of_any(ray),
+    }
+}
+
 /// The next subtree that may hold something before the limit.
 #[inline(always)]
 fn waiting<K: Kernel>(stack: &mut Stack<K>, limit: K::Distance) -> Option<u32> {
@@ -314,7 +326,7 @@ impl<P: Profile> Intersect<P::Kernel> for Bvh<'_, P> {
     fn closest(&self, ray: &RayOf<P>, stack: &mut Stack<P::Kernel>, stats: &mut impl Stats) -> u32 {
         let mut best: Option<DepthOf<P>> = None;
         let mut hit = NONE;
-        let path = P::Kernel::path(ray);
+        let path = path::<P>(ray);
         let mut limit = P::Kernel::reach(ray, &path);
         self.walk(ray, &path, stack, stats, |index, primitive| {
             if let Some(depth) = primitive.intersect(ray)
@@ -337,7 +349,7 @@ impl<P: Profile> Intersect<P::Kernel> for Bvh<'_, P> {
         mut blocks: impl FnMut(u32) -> bool,
     ) -> bool {
         let mut hit = false;
-        let path = P::Kernel::path(ray);
+        let path = path::<P>(ray);
         let limit = P::Kernel::reach(ray, &path);
         self.walk(ray, &path, stack, stats, |index, primitive| {
             hit = primitive.intersect(ray).is_some() && blocks(index);

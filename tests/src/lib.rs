@@ -13,6 +13,7 @@ pub mod random;
 pub mod rays;
 pub mod scenes;
 pub mod shared;
+pub mod stack;
 pub mod symbols;
 pub mod ties;
 pub mod views;

@@ -8,7 +8,7 @@ use super::drawing::{Drawing, Found, Nearnesses, UNKNOWN};
 use super::{Bvh, Child, DistanceOf, Intersect, RayOf, Stack, waiting};
 use crate::camera::Camera;
 use crate::kernel::{Kernel, NONE};
-use crate::profile::{Need, Needs, Profile};
+use crate::profile::{Need, Needs, Prefer, Profile};
 use crate::render::Tile;
 use crate::stats::Stats;
 use crate::tile::{Beam, Edges, Footprint, SIDE};
@@ -16,9 +16,10 @@ use crate::tile::{Beam, Edges, Footprint, SIDE};
 pub(super) type BeamOf<P> = <<P as Profile>::Kernel as Kernel>::Beam;
 
 impl<P: Profile> Bvh<'_, P> {
-    /// Whether tiles walk together. They know triangles alone; and a profile that is not of all scenes has spheres where its
+    /// Whether tiles walk together, which is more code. They know triangles alone; and a profile that is not of all scenes has spheres where its
     /// scene has some.
-    const HAS_TILES: bool = !P::NEEDS.has(Need::Spheres) || P::NEEDS.bits() == Needs::ALL.bits();
+    const HAS_TILES: bool =
+        matches!(P::PREFER, Prefer::Speed) && (!P::NEEDS.has(Need::Spheres) || P::NEEDS.bits() == Needs::ALL.bits());
 
     /// See [`Intersect::closest_tile`].
     #[expect(clippy::too_many_arguments, reason = "the storage of a tile has three parts")]

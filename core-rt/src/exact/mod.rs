@@ -175,6 +175,11 @@ impl<W: Width> Kernel for Exact<W> {
     }
 
     #[inline(always)]
+    fn path_of_any(ray: &Ray<W>) -> W::Slopes {
+        W::Slopes::of_any(ray.origin, ray.direction)
+    }
+
+    #[inline(always)]
     fn octant(slopes: &W::Slopes) -> usize {
         slopes.octant()
     }

@@ -114,7 +114,8 @@ pub fn sub<T: Word>(a: Triple<T>, b: Triple<T>) -> Triple<T> {
 }
 
 /// `a x b`, for components that fit 32 bits. Each component is at most twice the product of the largest ones.
-#[inline(always)]
+#[cfg_attr(not(prefer_size), inline(always))]
+#[cfg_attr(prefer_size, inline(never))]
 pub fn cross<T: Word>(a: Triple<T>, b: Triple<T>) -> Triple<T> {
     let term = |i: usize, j: usize| a[i].product(b[j]) - a[j].product(b[i]);
     [term(1, 2), term(2, 0), term(0, 1)]

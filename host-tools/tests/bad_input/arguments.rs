@@ -71,6 +71,20 @@ fn kernels_that_do_not_exist() {
 }
 
 #[test]
+fn boards_that_are_unknown() {
+    refused(
+        "inspect scene.obj --board microbyt",
+        "invalid value 'microbyt' for '--board <BOARD>'\n  [possible values: microbit, hifive1, pico]\n\n  \
+         tip: a similar value exists: 'microbit'",
+    );
+    // Nothing counts what QEMU cannot run.
+    let output = Folder::with_triangle().run("inspect scene.obj --kernel exact14 --board pico");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(output.stdout.is_empty());
+    assert!(String::from_utf8_lossy(&output.stderr).contains("QEMU has no such machine"));
+}
+
+#[test]
 fn arguments_that_are_missing() {
     for (line, missing, usage) in [
         ("render", "  -o <PNG>\n  <SCENE>", "intray render -o <PNG> <SCENE>"),
