@@ -9,14 +9,19 @@
 //! The nearest hit is the smallest (t, id), in exact order, with the id that the triangle has in its file. So the answer
 //! does not depend on the order of the visit, and nothing is pruned at equal t.
 
+mod drawing;
+mod together;
+
 use core::cmp::Ordering;
 use core::num::NonZeroU32;
 
 use heapless::VecView;
 
+use crate::camera::Camera;
 use crate::kernel::{ANY_OCTANT, Bounds, Kernel, NONE};
 use crate::mesh::Mesh;
 use crate::profile::{Need, Prefer, Profile};
+use crate::render::Tile;
 use crate::section::Integers;
 use crate::stats::Stats;
 
@@ -77,18 +82,19 @@ pub trait Intersect<K: Kernel> {
     /// Whether anything that is hit blocks, by its index. Whatever is hit is asked about once.
     fn any(&self, ray: &K::Ray, stack: &mut Stack<K>, stats: &mut impl Stats, blocks: impl FnMut(u32) -> bool) -> bool;
 
-    /// The nearest hits of a tile of rays, row by row; a kernel that can may walk the tree once for all of them.
+    /// The nearest hits of a tile of rays, row by row, given the ray of a pixel. Where they are those of a camera, from its eye,
+    /// a kernel that can may walk the tree once for many of them, with the room of [`tile::ROOM`](crate::tile::ROOM) bytes.
+    #[expect(clippy::too_many_arguments, reason = "the storage of a tile has three parts")]
     fn closest_tile(
         &self,
-        rays: impl Iterator<Item = Option<K::Ray>>,
+        camera: Option<&Camera<K::Word>>,
+        ray: impl Fn([u16; 2]) -> Option<K::Ray>,
+        tile: Tile,
         hits: &mut [u32],
+        room: &mut [u8],
         stack: &mut Stack<K>,
         stats: &mut impl Stats,
-    ) {
-        for (ray, hit) in rays.zip(hits) {
-            *hit = ray.as_ref().map_or(NONE, |ray| self.closest(ray, stack, stats));
-        }
-    }
+    );
 }
 
 type RayOf<P> = <<P as Profile>::Kernel as Kernel>::Ray;
@@ -154,6 +160,16 @@ impl<'a, P: Profile> Bvh<'a, P> {
     pub fn bounds(&self) -> impl Iterator<Item = Bounds> {
         let spheres = if P::NEEDS.has(Need::Spheres) { self.spheres } else { &[] };
         self.triangles.bounds().chain(spheres.iter().map(|sphere| P::Kernel::ball(sphere).bounds()))
+    }
+
+    /// Whether a hit is nearer than another: the smaller (t, id).
+    #[inline(always)]
+    fn nearer(&self, (index, depth): (u32, &DepthOf<P>), (other, than): (u32, &DepthOf<P>)) -> bool {
+        match P::Kernel::order(depth, than) {
+            Ordering::Less => true,
+            Ordering::Equal => self.id(index) < self.id(other),
+            Ordering::Greater => false,
+        }
     }
 
     /// Tests every primitive that may be hit before the limit that `visit` returns, nearest boxes first, until it returns
@@ -241,10 +257,24 @@ impl<'a, P: Profile> Bvh<'a, P> {
     fn leaf_in<const OCTANT: usize>(
         &self,
         path: &PathOf<P>,
+        child: u32,
+        limit: DistanceOf<P>,
+        stack: &mut Stack<P::Kernel>,
+        stats: &mut impl Stats,
+    ) -> Option<NonZeroU32> {
+        let enter = |node: &_, child| P::Kernel::enter::<OCTANT>(path, node, child, limit);
+        self.descend(child, limit, stack, stats, enter)
+    }
+
+    /// The first leaf at or below `child`, or below what waits, that is entered before the limit.
+    #[inline(always)]
+    fn descend(
+        &self,
         mut child: u32,
         limit: DistanceOf<P>,
         stack: &mut Stack<P::Kernel>,
         stats: &mut impl Stats,
+        enter: impl Fn(&<P::Kernel as Kernel>::Node, usize) -> Option<DistanceOf<P>>,
     ) -> Option<NonZeroU32> {
         loop {
             let index = match Child::unpack(child) {
@@ -256,7 +286,7 @@ impl<'a, P: Profile> Bvh<'a, P> {
             stats.boxes(2);
             let [first, second] = P::Kernel::children(node);
             // The second test stands here twice: the code knows of the first what it found, and keeps no flag.
-            let enter = |child| P::Kernel::enter::<OCTANT>(path, node, child, limit);
+            let enter = |child| enter(node, child);
             child = if let Some(a) = enter(0) {
                 if let Some(b) = enter(1) {
                     let (near, far) = if b < a { (second, (first, a)) } else { (first, (second, b)) };
@@ -303,20 +333,12 @@ impl<P: Profile> Intersect<P::Kernel> for Bvh<'_, P> {
         let path = path::<P>(ray);
         let mut limit = P::Kernel::reach(ray, &path);
         self.walk(ray, &path, stack, stats, |index, primitive| {
-            if let Some(depth) = primitive.intersect(ray) {
-                let nearer = match &best {
-                    None => true,
-                    Some(best) => match P::Kernel::order(&depth, best) {
-                        Ordering::Less => true,
-                        Ordering::Equal => self.id(index) < self.id(hit),
-                        Ordering::Greater => false,
-                    },
-                };
-                if nearer {
-                    limit = P::Kernel::limit(&path, &depth);
-                    best = Some(depth);
-                    hit = index;
-                }
+            if let Some(depth) = primitive.intersect(ray)
+                && best.as_ref().is_none_or(|best| self.nearer((index, &depth), (hit, best)))
+            {
+                limit = P::Kernel::limit(&path, &depth);
+                best = Some(depth);
+                hit = index;
             }
             Some(limit)
         });
@@ -338,6 +360,19 @@ impl<P: Profile> Intersect<P::Kernel> for Bvh<'_, P> {
             (!hit).then_some(limit)
         });
         hit
+    }
+
+    fn closest_tile(
+        &self,
+        camera: Option<&Camera<<P::Kernel as Kernel>::Word>>,
+        ray: impl Fn([u16; 2]) -> Option<RayOf<P>>,
+        tile: Tile,
+        hits: &mut [u32],
+        room: &mut [u8],
+        stack: &mut Stack<P::Kernel>,
+        stats: &mut impl Stats,
+    ) {
+        self.tile(camera, ray, tile, hits, room, stack, stats);
     }
 }
 

@@ -186,6 +186,17 @@ impl<W: Word> Camera<W> {
         ]
     }
 
+    /// What [`Camera::direction`] rounds to nearest: fractional bits, and with so many the value in a pixel and what a step to
+    /// the right and one down adds.
+    #[inline]
+    #[must_use]
+    pub fn linear(&self, x: u16, y: u16) -> (u32, [Triple<W>; 3]) {
+        let (x, y) = (W::from_i32(x.into()), W::from_i32(y.into()));
+        let half = (W::ONE << self.fraction_bits) >> 1;
+        let component = |axis: usize| self.first[axis] + (x * self.right[axis] + y * self.down[axis]) - half;
+        (self.fraction_bits, [[component(0), component(1), component(2)], self.right, self.down])
+    }
+
     /// The origin and the direction of the parallel ray through a pixel.
     #[inline]
     #[must_use]

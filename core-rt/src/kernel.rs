@@ -13,6 +13,7 @@ use crate::num::{Triple, Word};
 use crate::record::Record;
 use crate::space::Space;
 use crate::sphere::Ball;
+use crate::tile::Beam;
 
 /// The corners of a triangle in grid units.
 pub type Vertices = [Triple<i32>; 3];
@@ -146,6 +147,8 @@ pub trait Kernel: Copy + Debug + Default + Send + Sync + 'static {
     type Distance: Copy + Debug + PartialOrd + Send;
     /// Where a ray hits a triangle or a sphere, exactly (as exactly as the kernel knows).
     type Depth: Copy + Debug;
+    /// The camera rays of a tile, where they walk the tree together; [`NoBeam`](crate::tile::NoBeam) where they do not.
+    type Beam: Beam<Self>;
 
     /// The settings for a scene of these triangles, where a user may ask for some; `None` where the kernel lacks what is
     /// asked for, or cannot hold it. Of the host, in the integers of the device.

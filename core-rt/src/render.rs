@@ -5,7 +5,7 @@
 
 use crate::bvh::{Intersect, Stack};
 use crate::colour::{Colour, Transfer};
-use crate::kernel::Kernel;
+use crate::kernel::{Kernel, NONE};
 use crate::profile::{Need, Profile};
 use crate::samples::Places;
 use crate::scene::Scene;
@@ -166,16 +166,21 @@ pub fn render_tile<'w, P: Profile>(
     };
     let format = P::NEEDS.format().unwrap_or(scene.frame.format);
     let count = tile.pixels();
-    let room = [workspace.hits.len(), workspace.pixels.len()];
-    let (Some(hits), Some(pixels)) =
-        (workspace.hits.get_mut(..count), workspace.pixels.get_mut(..count * format.bytes()))
-    else {
+    let lengths = [workspace.hits.len(), workspace.pixels.len()];
+    let room = &mut *workspace.pixels;
+    let (Some(hits), true) = (workspace.hits.get_mut(..count), lengths[1] >= count * format.bytes()) else {
         // Counted: a division would be a routine for this alone.
-        let fits = |&pixels: &usize| pixels * format.bytes() <= room[1];
-        let capacity = (1..=room[0]).take_while(fits).count();
+        let fits = |&pixels: &usize| pixels * format.bytes() <= lengths[1];
+        let capacity = (1..=lengths[0]).take_while(fits).count();
         return Err(RenderError::Tile { capacity, needed: count });
     };
     let places = tile.places();
+    if !P::NEEDS.has(Need::Supersampling) {
+        // What pixels are written to is room for depths before.
+        let ray = |[x, y]: [u16; 2]| scene.primary(&scene.camera, x, y);
+        scene.bvh.closest_tile(scene.shared_origin(), ray, tile, hits, room, stack, stats);
+    }
+    let pixels = room.get_mut(..count * format.bytes()).unwrap_or_default();
     if P::NEEDS.has(Need::Supersampling) {
         // One sample goes the same way: it is in the middle, and the mean of itself.
         let samples = scene.frame.samples;
@@ -192,7 +197,9 @@ pub fn render_tile<'w, P: Profile>(
             left -= room;
             let hits = hits.get_mut(..room).unwrap_or_default();
             let again = rays.clone();
-            scene.bvh.closest_tile(rays.by_ref().take(room), hits, stack, stats);
+            for (hit, ray) in hits.iter_mut().zip(rays.by_ref()) {
+                *hit = ray.as_ref().map_or(NONE, |ray| scene.bvh.closest(ray, stack, stats));
+            }
             for (&hit, ray) in hits.iter().zip(again) {
                 sum = sum.plus(seen(scene, ray.as_ref(), hit, stack, branches, stats).clamped());
                 taken += 1;
@@ -206,7 +213,6 @@ pub fn render_tile<'w, P: Profile>(
         }
     } else {
         let ray = |[x, y]: [u16; 2]| scene.primary(&scene.camera, x, y);
-        scene.bvh.closest_tile(places.clone().map(ray), hits, stack, stats);
         // Taken off one by one: to know how many chunks there are takes a division.
         let mut left = &mut *pixels;
         for (&hit, place) in hits.iter().zip(places) {

@@ -170,6 +170,13 @@ impl<P: Profile> Scene<'_, P> {
         P::NEEDS.has(Need::Shadows) && self.frame.needs.has(Need::Shadows)
     }
 
+    /// The camera, where all its rays start at its eye.
+    #[inline]
+    #[must_use]
+    pub fn shared_origin(&self) -> Option<&Camera<<P::Kernel as Kernel>::Word>> {
+        (!P::NEEDS.has(Need::Orthographic) || !self.frame.needs.has(Need::Orthographic)).then_some(&self.camera)
+    }
+
     /// The ray of a camera, the scene's or one that looks [through](Camera::through) other places, that goes through a pixel;
     /// `None` where the direction is zero.
     #[inline]

@@ -21,7 +21,7 @@ pub(crate) fn draw<P: Profile>(scene: &Scene<'_, P>, tile: Tile, workspace: &mut
     }
     let hits = workspace.hits.get_mut(..tile.pixels()).unwrap_or_default();
     let ray = |[x, y]: [u16; 2]| P::Kernel::primary(scene.settings, &scene.camera, x, y);
-    scene.bvh.closest_tile(tile.places().map(ray), hits, workspace.stack, &mut NoStats);
+    scene.bvh.closest_tile(Some(&scene.camera), ray, tile, hits, workspace.pixels, workspace.stack, &mut NoStats);
     let pixels = workspace.pixels.as_chunks_mut().0;
     for ((pixel, &hit), place) in pixels.iter_mut().zip(&*hits).zip(tile.places()) {
         let colour = ray(place).and_then(|ray| lit(scene, &ray, hit));

@@ -204,7 +204,7 @@ fn draw<'w, F: Firmware>(
         Draw::ByHand => bytes = by_hand::draw(scene, tile, workspace),
         Draw::Hits(way) => {
             let hits = workspace.hits.get_mut(..count).unwrap_or_default();
-            hits::find(scene, tile, way, hits, workspace.stack, stats);
+            hits::find(scene, tile, way, hits, workspace.pixels, workspace.stack, stats);
         }
     }
     window::intray_window_end();

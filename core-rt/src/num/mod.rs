@@ -50,6 +50,8 @@ pub trait Word:
     fn wrapping_sub(self, other: Self) -> Self;
     /// The number of bits that `|self|` takes: 0 for 0, n for 2^(n-1) <= |self| < 2^n.
     fn magnitude_bits(self) -> u32;
+    /// The least n for which all values are at least -2^n and below 2^n.
+    fn common_bits(values: impl IntoIterator<Item = Self>) -> u32;
     /// `|self|`; never called on the most negative word.
     fn magnitude(self) -> Self {
         if self < Self::ZERO { -self } else { self }
@@ -89,6 +91,12 @@ macro_rules! word {
             #[inline(always)]
             fn magnitude_bits(self) -> u32 {
                 self.unsigned_abs().bit_length()
+            }
+            #[inline(always)]
+            fn common_bits(values: impl IntoIterator<Item = Self>) -> u32 {
+                // One length for all: the highest bit that differs from its value's sign.
+                let differing = values.into_iter().fold(0, |all, value| all | (value ^ (value >> (Self::BITS - 1))));
+                differing.cast_unsigned().bit_length()
             }
         }
     };
