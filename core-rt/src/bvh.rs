@@ -102,23 +102,6 @@ type DepthOf<P> = <<P as Profile>::Kernel as Kernel>::Depth;
 type PathOf<P> = <<P as Profile>::Kernel as Kernel>::Path;
 type DistanceOf<P> = <<P as Profile>::Kernel as Kernel>::Distance;
 
-/// What a leaf holds.
-enum Primitive<'a, K: Kernel> {
-    Triangle(&'a K::Triangle),
-    /// A sphere, and whether the ray starts on it.
-    Sphere(&'a K::Sphere, bool),
-}
-
-impl<K: Kernel> Primitive<'_, K> {
-    #[inline(always)]
-    fn intersect(self, ray: &K::Ray) -> Option<K::Depth> {
-        match self {
-            Self::Triangle(triangle) => K::intersect(ray, triangle),
-            Self::Sphere(sphere, leaves) => K::intersect_sphere(ray, sphere, leaves),
-        }
-    }
-}
-
 /// A tree over a blob's sections.
 #[derive(Clone, Copy, Debug)]
 pub struct Bvh<'a, P: Profile> {
@@ -173,7 +156,7 @@ impl<'a, P: Profile> Bvh<'a, P> {
     }
 
     /// Tests every primitive that may be hit before the limit that `visit` returns, nearest boxes first, until it returns
-    /// none. What it is given is the primitive's index and its hit.
+    /// none. What it is given is the primitive's index and its hit, if there is one.
     #[inline(always)]
     fn walk(
         &self,
@@ -181,7 +164,7 @@ impl<'a, P: Profile> Bvh<'a, P> {
         path: &PathOf<P>,
         stack: &mut Stack<P::Kernel>,
         stats: &mut impl Stats,
-        mut visit: impl FnMut(u32, Primitive<'_, P::Kernel>) -> Option<DistanceOf<P>>,
+        mut visit: impl FnMut(u32, Option<DepthOf<P>>) -> Option<DistanceOf<P>>,
     ) {
         let mut limit = P::Kernel::reach(ray, path);
         let (skip, octant) = (P::Kernel::skip(ray), P::Kernel::octant(path));
@@ -196,7 +179,7 @@ impl<'a, P: Profile> Bvh<'a, P> {
                 for (index, sphere) in (first..).zip(run) {
                     stats.sphere();
                     // A ray that starts on a sphere may meet it again, from inside.
-                    match visit(index, Primitive::Sphere(sphere, index == skip)) {
+                    match visit(index, P::Kernel::intersect_sphere(ray, sphere, index == skip)) {
                         Some(nearer) => limit = nearer,
                         None => return,
                     }
@@ -205,7 +188,7 @@ impl<'a, P: Profile> Bvh<'a, P> {
                 for index in (first..first + count).filter(|&index| index != skip) {
                     stats.triangle();
                     let Some(triangle) = self.triangles.assemble(index) else { return };
-                    match visit(index, Primitive::Triangle(&triangle)) {
+                    match visit(index, P::Kernel::intersect(ray, &triangle)) {
                         Some(nearer) => limit = nearer,
                         None => return,
                     }
@@ -214,7 +197,7 @@ impl<'a, P: Profile> Bvh<'a, P> {
                 for (index, triangle) in (first..).zip(self.triangles.run(first, count)) {
                     if index != skip {
                         stats.triangle();
-                        match visit(index, Primitive::Triangle(triangle)) {
+                        match visit(index, P::Kernel::intersect(ray, triangle)) {
                             Some(nearer) => limit = nearer,
                             None => return,
                         }
@@ -332,8 +315,8 @@ impl<P: Profile> Intersect<P::Kernel> for Bvh<'_, P> {
         let mut hit = NONE;
         let path = path::<P>(ray);
         let mut limit = P::Kernel::reach(ray, &path);
-        self.walk(ray, &path, stack, stats, |index, primitive| {
-            if let Some(depth) = primitive.intersect(ray)
+        self.walk(ray, &path, stack, stats, |index, depth| {
+            if let Some(depth) = depth
                 && best.as_ref().is_none_or(|best| self.nearer((index, &depth), (hit, best)))
             {
                 limit = P::Kernel::limit(&path, &depth);
@@ -355,8 +338,8 @@ impl<P: Profile> Intersect<P::Kernel> for Bvh<'_, P> {
         let mut hit = false;
         let path = path::<P>(ray);
         let limit = P::Kernel::reach(ray, &path);
-        self.walk(ray, &path, stack, stats, |index, primitive| {
-            hit = primitive.intersect(ray).is_some() && blocks(index);
+        self.walk(ray, &path, stack, stats, |index, depth| {
+            hit = depth.is_some() && blocks(index);
             (!hit).then_some(limit)
         });
         hit
