@@ -97,7 +97,9 @@ fn shaded<'a, P: Profile>(
             };
             stats.light(number);
             diffuse = diffuse.plus(Colour::lit(&light, cosine));
-            if let Some((lustre, along)) = shine {
+            if P::NEEDS.highlights()
+                && let Some((lustre, along)) = shine
+            {
                 let lobe = lobe::<P>(lustre, along, normal, towards);
                 shining = shining.plus(Colour::lit(&light, lobe));
             }
@@ -111,7 +113,9 @@ fn shaded<'a, P: Profile>(
             add(0, light);
         }
         colour = diffuse.reflected(&albedo);
-        if let Some((lustre, _)) = shine {
+        if P::NEEDS.highlights()
+            && let Some((lustre, _)) = shine
+        {
             let specular = towards_white(&lustre.specular, whiteness);
             colour = colour.plus(shining.reflected(&specular).doubled(lustre.gain.into()));
         }

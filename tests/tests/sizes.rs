@@ -112,7 +112,7 @@ fn what_nothing_asks_for_is_found() {
     for board in boards() {
         // All of them, in two programs: there is one projection, one transfer and one format in either.
         let others = WHITTED.without(Need::Srgb).without(Need::Rgb888).with(Need::Linear, true);
-        let others = others.with(Need::Orthographic, true);
+        let others = others.with(Need::Orthographic, true).with(Need::SharedVertices, true);
         let programs = [WHITTED, others.with(Need::Rgb565, true), others.with(Need::Gray8, true)].map(|needs| {
             (needs, { routines(built(board, WHOLE, Prefer::Speed, needs).bytes()).expect("it has debug information") })
         });

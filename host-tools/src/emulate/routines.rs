@@ -14,10 +14,11 @@ use object::{Endianness, Object, ObjectSection, SectionKind};
 /// What is in a file's path, the function (any of the file, if none is named), and the needs each of which asks for it.
 ///
 /// A need that is only a branch has no routine: emission, ambient light, linear pixels, widths, several lights.
-const ROUTINES: [(&str, Option<&str>, &[Need]); 41] = {
+const ROUTINES: [(&str, Option<&str>, &[Need]); 42] = {
     use Need::*;
     [
         ("core-rt/src/bvh.rs", Some("any"), &[Shadows]),
+        ("core-rt/src/mesh.rs", Some("assemble"), &[SharedVertices]),
         ("core-rt/src/light.rs", Some("passed"), &[TintedShadow]),
         ("core-rt/src/whitted.rs", Some("go_on"), &[Reflection, Refraction]),
         ("core-rt/src/whitted.rs", Some("turned"), &[Reflection, Refraction]),
