@@ -11,6 +11,7 @@ pub mod oracle;
 pub mod painted;
 pub mod random;
 pub mod rays;
+pub mod readme;
 pub mod scenes;
 pub mod shared;
 pub mod stack;

@@ -67,7 +67,7 @@ fn brute<K: Kernel>(scene: &Scene<'_, Full<K>>, ray: &K::Ray) -> u32 {
     let (bvh, skip) = (&scene.bvh, K::skip(ray));
     let triangles = (0..).zip(bvh.triangles.records).filter(|(index, _)| *index != skip);
     let triangles = triangles.map(|(index, triangle)| (index, K::intersect(ray, triangle)));
-    let spheres = (bvh.triangles.len() as u32..).zip(bvh.spheres);
+    let spheres = (bvh.triangles.len()..).zip(bvh.spheres);
     let spheres = spheres.map(|(index, sphere)| (index, K::intersect_sphere(ray, sphere, index == skip)));
     let hits = triangles.chain(spheres).filter_map(|(index, depth)| Some((index, depth?)));
     let nearest = hits.min_by(|(i, a), (j, b)| K::order(a, b).then(bvh.id(*i).cmp(&bvh.id(*j))));

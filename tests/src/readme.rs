@@ -1,0 +1,105 @@
+//! The generated parts of the README: found by their marks, compared, or renewed with `INTRAY_BLESS=1`.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::Mutex;
+
+use host_tools::files;
+
+const END: &str = "<!-- end of generated -->\n";
+
+/// The README is written by one test at a time.
+static README: Mutex<()> = Mutex::new(());
+
+/// The path of a file of the project.
+#[must_use]
+pub fn root(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(name)
+}
+
+/// How a generated part begins.
+fn begin(part: &str) -> String {
+    format!("<!-- generated: {part} -->\n")
+}
+
+/// The text of a generated part.
+#[must_use]
+pub fn generated<'a>(text: &'a str, part: &str) -> Option<&'a str> {
+    let (_, rest) = text.split_once(&begin(part))?;
+    Some(rest.split_once(END)?.0)
+}
+
+/// The text with a generated part replaced.
+fn replaced(text: &str, part: &str, figures: &str) -> Option<String> {
+    let begin = begin(part);
+    let (before, rest) = text.split_once(&begin)?;
+    let (_, after) = rest.split_once(END)?;
+    Some(format!("{before}{begin}{figures}{END}{after}"))
+}
+
+/// The README as it is.
+///
+/// # Panics
+/// If it cannot be read.
+#[must_use]
+pub fn readme() -> String {
+    String::from_utf8(files::read(&root("README.md")).expect("a README")).expect("it is text")
+}
+
+/// Whether figures are to be renewed and not compared.
+#[must_use]
+pub fn is_blessing() -> bool {
+    std::env::var_os("INTRAY_BLESS").is_some()
+}
+
+/// Checks a generated part of the README, or renews it.
+///
+/// # Panics
+/// If it is another.
+pub fn check_part(part: &str, figures: &str, is_same: impl Fn(&str, &str) -> bool) {
+    let _lock = README.lock().expect("whoever had it let it go");
+    let readme = readme();
+    let expected = replaced(&readme, part, figures).expect("the README has the marks");
+    if is_blessing() {
+        files::write_atomically(&root("README.md"), expected.as_bytes()).expect("it can be written");
+    } else {
+        let stored = generated(&readme, part).unwrap_or_default();
+        assert!(is_same(stored, figures), "README.md: INTRAY_BLESS=1 renews the figures\n{stored}\n{figures}");
+    }
+}
+
+/// The compiler that figures are of, and its version.
+///
+/// # Panics
+/// If there is none.
+#[must_use]
+pub fn compiler() -> String {
+    let output = Command::new("rustc").arg("--version").output().expect("there is a compiler");
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    text.split(' ').take(2).collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn marks_are_needed_and_stale_figures_are_seen() {
+        assert_eq!(replaced("no marks", "x", "y"), None);
+        let text = format!("a\n{}old\n{END}b\n{}other\n{END}", begin("x"), begin("y"));
+        assert_eq!((generated(&text, "x"), generated(&text, "y")), (Some("old\n"), Some("other\n")));
+        let new = format!("a\n{}new\n{END}b\n{}other\n{END}", begin("x"), begin("y"));
+        assert_eq!(replaced(&text, "x", "new\n"), Some(new));
+    }
+
+    #[test]
+    fn other_figures_of_a_chip_are_seen_and_other_paths_are_not() {
+        let row =
+            "| board | kernel | instructions |\n| microbit | `exact14` | 5000 | 22.1 | 7.4 | 4004 | 36276 | 77336 |\n";
+        assert!(is_same_but_for_paths(row, row));
+        assert!(is_same_but_for_paths(row, &row.replace("36276", "36300")));
+        for (old, new) in [("36276", "36800"), ("5000", "5001"), ("4004", "4008"), ("77336", "77344"), ("\n", "\n\n")] {
+            assert!(!is_same_but_for_paths(row, &row.replace(old, new)), "{old}");
+        }
+    }
+}
