@@ -76,7 +76,7 @@ pub(super) fn ranges(elf: &Elf, needs: Needs, shared: &str) -> Result<String, Em
                 (None, None) => shared.into(),
             };
             // A string takes text.
-            let _ = writeln!(list, "{address:#x} 2 {name}");
+            let _ = writeln!(list, "{address:#x} 0x2 {name}");
         }
     }
     Ok(list)
