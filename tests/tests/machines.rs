@@ -9,7 +9,11 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use core_rt::exact::{Exact14, Exact29};
+use core_rt::kernel::Kernel;
+use core_rt::profile::Need;
 use firmware_rt::board::{BOARDS, Board};
+use float_rt::Float32;
 use glam::{DVec2, DVec3};
 use host_tools::decimate::decimate;
 use host_tools::emulate::Run;
@@ -21,6 +25,7 @@ use host_tools::model::{Lobe, Model, Specular, Texture};
 use host_tools::picture::Picture;
 use host_tools::prepare::{Blob, Options};
 use rayon::prelude::*;
+use tests::blobs::Draft;
 use tests::boards::boards;
 use tests::{scenes, shared};
 
@@ -156,6 +161,21 @@ impl Job<'_> {
     }
 }
 
+/// A blob to build firmware for, that takes ids wherever they stand. It is not to be drawn: a scene has them in one place.
+fn for_any_ids(blob: &Blob, kernel: &str) -> Blob {
+    fn of<K: Kernel>(blob: &Blob) -> Blob {
+        let mut draft = Draft::<K>::read(blob.bytes()).expect("a blob just made");
+        draft.header.needs = draft.header.needs.with(Need::Ids, true).with(Need::IdsInRecords, true);
+        draft.write()
+    }
+    match kernel {
+        "exact14" => of::<Exact14>(blob),
+        "exact29" => of::<Exact29>(blob),
+        "f32" => of::<Float32>(blob),
+        _ => unreachable!("no firmware of {kernel} is built here"),
+    }
+}
+
 #[test]
 fn pictures_are_the_same_on_three_machines() {
     let all = all();
@@ -165,7 +185,7 @@ fn pictures_are_the_same_on_three_machines() {
         boards()
             .flat_map(|board| kernels.iter().map(move |&kernel| (board, kernel)))
             .map(|(board, kernel)| {
-                let blob = prepared(model, kernel);
+                let blob = for_any_ids(&prepared(model, kernel), kernel);
                 let wanted = Wanted { board, blob: blob.bytes(), hits: None, count: false };
                 (board, kernel, wanted.provide().expect("it can be built"))
             })
