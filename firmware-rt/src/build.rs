@@ -65,7 +65,9 @@ impl Traits {
             true => (usize::from(header.max_depth) + 1).next_multiple_of(4),
             false => 0,
         };
-        Self { kernel, needs: header.needs.bits(), depth, branches }
+        // Where ids stand depends on how many there are: firmware that has them apart takes smaller scenes too.
+        let needs = header.needs.with(Need::IdsInRecords, header.needs.has(Need::Ids)).bits();
+        Self { kernel, needs, depth, branches }
     }
 
     /// The kernel's type as a path in Rust; `None` where no firmware has it.
