@@ -1,0 +1,238 @@
+//! A tile of pixels in lockstep: every lane takes the same steps, and a mask says whose results count.
+//!
+//! The text's outline: for each generation, for each sphere, enable, intersect, disable where the root is imaginary, behind or
+//! farther; shade; reflect; disable the pixel for what is left of the generation. Taken by the word, that ends a pixel at the first
+//! sphere of the list. [`Outline::Nearest`] shades after the last sphere instead, under a mask for each that is the nearest
+//! of some lane.
+//!
+//! State stands in arrays by field, of N lanes; a mask is -1 where a lane is enabled and 0 where it is not. Loops over the lanes
+//! have no branch, so that a compiler makes vectors of them; where no lane is enabled, a step is left out.
+
+use core::array::from_fn;
+
+use crate::colour::{LIGHT_MAX, Light, SHARE_ONE, cosine, share_of};
+use crate::root::digit;
+use crate::scene::{Outline, Scene, Sphere};
+use crate::step::{coefficients, determinant, difference, held, numerator, parameter, point, product, reflection};
+use crate::widths::Widths;
+
+/// A field of all lanes.
+type Row<const N: usize> = [i32; N];
+
+/// -1 for true, 0 for false.
+#[inline(always)]
+fn mask(condition: bool) -> i32 {
+    -i32::from(condition)
+}
+
+/// `new` where the mask is set, `old` elsewhere.
+#[inline(always)]
+fn select(mask: i32, new: i32, old: i32) -> i32 {
+    (new & mask) | (old & !mask)
+}
+
+/// Whether any lane is enabled.
+#[inline(always)]
+fn any<const N: usize>(enabled: &Row<N>) -> bool {
+    enabled.iter().fold(0, |any, lane| any | lane) != 0
+}
+
+/// The light of a tile's pixels. Places beyond the picture are those of its edge.
+#[inline(always)]
+#[must_use]
+pub fn trace<const N: usize>(scene: &Scene<'_>, pixels: &[[u16; 2]; N]) -> [Light; N] {
+    let mut lanes = Lanes::new(scene, pixels);
+    for _ in 0..scene.settings.generations {
+        if !any(&lanes.alive) {
+            break;
+        }
+        lanes.generation(scene);
+    }
+    from_fn(|lane| lanes.light.map(|row| row[lane].min(LIGHT_MAX.into()) as u16))
+}
+
+/// What the lanes hold from one generation to the next.
+#[derive(Debug)]
+struct Lanes<const N: usize> {
+    origin: [Row<N>; 3],
+    direction: [Row<N>; 3],
+    /// What of the light is still seen, as shares.
+    share: [Row<N>; 3],
+    /// What was seen: at most white in each of less than 2^16 generations.
+    light: [Row<N>; 3],
+    /// Of lanes whose rays go on.
+    alive: Row<N>,
+}
+
+impl<const N: usize> Lanes<N> {
+    #[inline(always)]
+    fn new(scene: &Scene<'_>, pixels: &[[u16; 2]; N]) -> Self {
+        let mut lanes = Self {
+            origin: [[0; N]; 3],
+            direction: [[0; N]; 3],
+            share: [[SHARE_ONE.into(); N]; 3],
+            light: [[0; N]; 3],
+            alive: [-1; N],
+        };
+        for lane in 0..N {
+            let (origin, direction) = scene.ray(pixels[lane]);
+            set(&mut lanes.origin, lane, -1, origin);
+            set(&mut lanes.direction, lane, -1, direction);
+        }
+        lanes
+    }
+
+    /// All spheres once; then lanes that met none see the background and are done.
+    #[inline(always)]
+    fn generation(&mut self, scene: &Scene<'_>) {
+        let widths = scene.settings.widths;
+        let mut search = Search {
+            a: from_fn(|lane| {
+                let direction = get(&self.direction, lane);
+                product(direction, direction, widths)
+            }),
+            enabled: self.alive,
+            t: [widths.product_max(); N],
+            nearest: [-1; N],
+        };
+        for (number, sphere) in (0..).zip(scene.spheres) {
+            let Some(met) = search.sphere(self, sphere, number, widths) else { continue };
+            if scene.settings.outline == Outline::Literal {
+                self.shade(scene, sphere, &search.t, &met);
+                for lane in 0..N {
+                    search.enabled[lane] &= !met[lane];
+                }
+            }
+        }
+        if scene.settings.outline == Outline::Nearest {
+            for (number, sphere) in (0..).zip(scene.spheres) {
+                let met = from_fn(|lane| mask(search.nearest[lane] == number));
+                if any(&met) {
+                    self.shade(scene, sphere, &search.t, &met);
+                }
+            }
+        }
+        for lane in 0..N {
+            let missed = self.alive[lane] & mask(search.nearest[lane] < 0);
+            for channel in 0..3 {
+                let seen = share_of(scene.background[channel].into(), self.share[channel][lane]);
+                self.light[channel][lane] += seen & missed;
+            }
+            self.alive[lane] &= !missed;
+        }
+    }
+
+    /// Shades and reflects the enabled lanes at a sphere.
+    #[inline(always)]
+    fn shade(&mut self, scene: &Scene<'_>, sphere: &Sphere, t: &Row<N>, enabled: &Row<N>) {
+        let widths = scene.settings.widths;
+        let centre = sphere.centre.map(i32::from);
+        let mut normal = [[0; N]; 3];
+        let mut cosines = [0; N];
+        for lane in 0..N {
+            let origin = point(get(&self.origin, lane), get(&self.direction, lane), t[lane], widths);
+            set(&mut self.origin, lane, enabled[lane], origin);
+            set(&mut normal, lane, -1, difference(origin, centre, widths));
+        }
+        for lane in 0..N {
+            cosines[lane] = cosine(product(get(&normal, lane), scene.light, widths), sphere.radius.into(), widths);
+        }
+        for lane in 0..N {
+            let mut left = 0;
+            for channel in 0..3 {
+                let share = &mut self.share[channel][lane];
+                let seen = share_of(sphere.surface.sent(channel, cosines[lane]), *share);
+                self.light[channel][lane] += seen & enabled[lane];
+                *share = select(enabled[lane], share_of(*share, sphere.surface.mirror[channel].into()), *share);
+                left |= *share;
+            }
+            self.alive[lane] &= mask(left != 0);
+        }
+        if sphere.surface.mirror == [0; 3] {
+            return;
+        }
+        for lane in 0..N {
+            let direction = reflection(get(&self.direction, lane), get(&normal, lane), widths);
+            set(&mut self.direction, lane, enabled[lane], direction);
+        }
+    }
+}
+
+/// What the lanes hold within a generation.
+struct Search<const N: usize> {
+    /// |d|^2.
+    a: Row<N>,
+    /// Of lanes that still look for a sphere.
+    enabled: Row<N>,
+    /// The least t so far.
+    t: Row<N>,
+    /// The number of its sphere, or -1.
+    nearest: Row<N>,
+}
+
+impl<const N: usize> Search<N> {
+    /// Intersects all rays with a sphere; the lanes for which it is the nearest so far, if there are any.
+    #[inline(always)]
+    fn sphere(&mut self, lanes: &Lanes<N>, sphere: &Sphere, number: i32, widths: Widths) -> Option<Row<N>> {
+        let radius = i32::from(sphere.radius);
+        let centre = sphere.centre.map(i32::from);
+        let mut b = [0; N];
+        let mut determinants = [0; N];
+        let mut met = [0; N];
+        for lane in 0..N {
+            let (origin, direction) = (get(&lanes.origin, lane), get(&lanes.direction, lane));
+            let (dot, c) = coefficients(origin, direction, centre, radius * radius, widths);
+            let determinant = determinant(self.a[lane], dot, c);
+            // The sign of 64 bits as a mask.
+            let imaginary = (determinant >> 63) as i32;
+            met[lane] = self.enabled[lane] & mask(dot < 0) & !imaginary;
+            (b[lane], determinants[lane]) = (dot, determinant);
+        }
+        if !any(&met) {
+            return None;
+        }
+        let roots = roots(&determinants, &met, widths);
+        let mut t = [0; N];
+        for lane in 0..N {
+            let above = numerator(b[lane], roots[lane]);
+            met[lane] &= mask(above >= 0);
+            t[lane] = above & met[lane];
+        }
+        for lane in 0..N {
+            t[lane] = parameter(t[lane], self.a[lane], widths);
+        }
+        for lane in 0..N {
+            met[lane] &= mask(t[lane] <= self.t[lane]);
+            self.t[lane] = select(met[lane], t[lane], self.t[lane]);
+            self.nearest[lane] = select(met[lane], number, self.nearest[lane]);
+        }
+        any(&met).then_some(met)
+    }
+}
+
+/// The roots of the determinants as their words hold them, a bit of all lanes at a time.
+#[inline(always)]
+fn roots<const N: usize>(determinants: &[i64; N], enabled: &Row<N>, widths: Widths) -> Row<N> {
+    let mut rest: [i64; N] = from_fn(|lane| held(determinants[lane], widths) & i64::from(enabled[lane]));
+    let mut root = [0; N];
+    let mut place = widths.determinant().div_ceil(2);
+    while place > 0 {
+        place -= 1;
+        for lane in 0..N {
+            (rest[lane], root[lane]) = digit(rest[lane], root[lane], place);
+        }
+    }
+    root.map(|root| root as i32)
+}
+
+#[inline(always)]
+fn get<const N: usize>(triple: &[Row<N>; 3], lane: usize) -> [i32; 3] {
+    [triple[0][lane], triple[1][lane], triple[2][lane]]
+}
+
+#[inline(always)]
+fn set<const N: usize>(triple: &mut [Row<N>; 3], lane: usize, enabled: i32, new: [i32; 3]) {
+    for axis in 0..3 {
+        triple[axis][lane] = select(enabled, new[axis], triple[axis][lane]);
+    }
+}

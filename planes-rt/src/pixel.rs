@@ -1,0 +1,69 @@
+//! One pixel: what is not needed is skipped.
+
+use crate::colour::{LIGHT_MAX, Light, SHARE_ONE, cosine, share_of};
+use crate::scene::{Outline, Scene, Sphere};
+use crate::step::{coefficients, determinant, difference, held, numerator, parameter, point, product, reflection};
+
+/// The light of a pixel.
+#[inline(always)]
+#[must_use]
+pub fn trace(scene: &Scene<'_>, pixel: [u16; 2]) -> Light {
+    let widths = scene.settings.widths;
+    let (mut origin, mut direction) = scene.ray(pixel);
+    let mut share = [i32::from(SHARE_ONE); 3];
+    // At most white in each of less than 2^16 generations.
+    let mut light = [0; 3];
+    for _ in 0..scene.settings.generations {
+        let Some((sphere, t)) = meet(scene, origin, direction) else {
+            for channel in 0..3 {
+                light[channel] += share_of(scene.background[channel].into(), share[channel]);
+            }
+            break;
+        };
+        origin = point(origin, direction, t, widths);
+        let normal = difference(origin, sphere.centre.map(i32::from), widths);
+        let cosine = cosine(product(normal, scene.light, widths), sphere.radius.into(), widths);
+        for channel in 0..3 {
+            light[channel] += share_of(sphere.surface.sent(channel, cosine), share[channel]);
+            share[channel] = share_of(share[channel], sphere.surface.mirror[channel].into());
+        }
+        if share == [0; 3] {
+            break;
+        }
+        direction = reflection(direction, normal, widths);
+    }
+    light.map(|channel| channel.min(LIGHT_MAX.into()) as u16)
+}
+
+/// The sphere at which a ray ends, and its t.
+#[inline(always)]
+fn meet<'a>(scene: &Scene<'a>, origin: [i32; 3], direction: [i32; 3]) -> Option<(&'a Sphere, i32)> {
+    let widths = scene.settings.widths;
+    let a = product(direction, direction, widths);
+    let mut nearest = None;
+    let mut least = widths.product_max();
+    for sphere in scene.spheres {
+        let radius = i32::from(sphere.radius);
+        let (b, c) = coefficients(origin, direction, sphere.centre.map(i32::from), radius * radius, widths);
+        if b >= 0 {
+            continue;
+        }
+        let determinant = determinant(a, b, c);
+        if determinant < 0 {
+            continue;
+        }
+        // The standard library's root is quicker for one number than a bit at a time, and the same.
+        let above = numerator(b, held(determinant, widths).isqrt() as i32);
+        if above < 0 {
+            continue;
+        }
+        let t = parameter(above, a, widths);
+        if t <= least {
+            (nearest, least) = (Some((sphere, t)), t);
+            if scene.settings.outline == Outline::Literal {
+                break;
+            }
+        }
+    }
+    nearest
+}

@@ -1,0 +1,104 @@
+//! What a processor does with one ray and one sphere, without a branch.
+//!
+//! Of a ray o + t d and a sphere of centre c and radius r, with s = o - c, the nearer root of
+//! |d|^2 t^2 + 2 (d . s) t + |s|^2 - r^2 = 0 is t = (-b - sqrt(b^2 - a c)) / a, where a = |d|^2, b = d . s and
+//! c = |s|^2 - r^2. There is a hit where b is negative, the determinant is not, and t is not.
+//!
+//! b^2 - a c = |d|^2 r^2 - |d x s|^2: it is at most (|d| r)^2 however far the sphere is, so 36 bits hold the determinant of
+//! every ray up to |d| r = 2^18. The two products are wider, and only their difference is kept. Where it saturates,
+//! the root is too small and the hit too deep in the sphere.
+//!
+//! Words are at most as wide as [`Widths`] allows: components below 2^14, products below 2^30.
+
+use core::array::from_fn;
+
+use crate::widths::Widths;
+
+/// `a . b` without saturation: 3 2^28 at most.
+#[inline(always)]
+fn dot(a: [i32; 3], b: [i32; 3]) -> i32 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// `a . b` as a product.
+#[inline(always)]
+pub(crate) fn product(a: [i32; 3], b: [i32; 3], widths: Widths) -> i32 {
+    widths.saturate_product(dot(a, b))
+}
+
+/// `a - b` as components.
+#[inline(always)]
+pub(crate) fn difference(a: [i32; 3], b: [i32; 3], widths: Widths) -> [i32; 3] {
+    from_fn(|axis| widths.saturate_coordinate(a[axis] - b[axis]))
+}
+
+/// b and c of a ray and a sphere, its radius squared.
+#[inline(always)]
+pub(crate) fn coefficients(
+    origin: [i32; 3],
+    direction: [i32; 3],
+    centre: [i32; 3],
+    radius_squared: i32,
+    widths: Widths,
+) -> (i32, i32) {
+    let s = difference(origin, centre, widths);
+    // Between -2^28 and 3 2^28.
+    let c = dot(s, s) - radius_squared;
+    (product(direction, s, widths), widths.saturate_product(c))
+}
+
+/// `b^2 - a c`: magnitudes below 2^61. Negative where the ray misses; else to be [held](held).
+#[inline(always)]
+pub(crate) fn determinant(a: i32, b: i32, c: i32) -> i64 {
+    i64::from(b) * i64::from(b) - i64::from(a) * i64::from(c)
+}
+
+/// A determinant as its word holds it.
+#[inline(always)]
+pub(crate) fn held(determinant: i64, widths: Widths) -> i64 {
+    determinant.min(widths.determinant_max())
+}
+
+/// `-b - root`: negative where the nearer crossing is behind the origin. The root is below 2^31, -b below 2^30, so the
+/// difference fits where b is negative, and wraps to nothing that is used where it is not.
+#[inline(always)]
+pub(crate) fn numerator(b: i32, root: i32) -> i32 {
+    (-b).wrapping_sub(root)
+}
+
+/// t with its fractional bits, rounded down, for a numerator that is not negative: `numerator 2^f / a`, the dividend below
+/// 2^41. The t of a ray without a direction is not used.
+#[inline(always)]
+pub(crate) fn parameter(numerator: i32, a: i32, widths: Widths) -> i32 {
+    let dividend = i64::from(numerator) << widths.t_fraction();
+    widths.saturate_long_product(dividend / i64::from(a.max(1)))
+}
+
+/// o + t d, rounded to nearest.
+///
+/// `t |d_i|` fits 32 bits: t is at most |b| 2^f / a. Where a was saturated, both are at most the same word, so t is at most
+/// 2^f and the product 2^24. Else a = |d|^2 and |b| <= |s| |d|, so that t |d_i| <= 2^f |s| <= 2^10 sqrt(3) 2^14 < 2^25.
+#[inline(always)]
+pub(crate) fn point(origin: [i32; 3], direction: [i32; 3], t: i32, widths: Widths) -> [i32; 3] {
+    let bits = widths.t_fraction();
+    let half = (1 << bits) >> 1;
+    from_fn(|axis| widths.saturate_coordinate(origin[axis] + ((t * direction[axis] + half) >> bits)))
+}
+
+/// d - 2 (d . n) n / |n|^2, rounded to nearest, for a normal of any length.
+///
+/// The quotient has as many fractional bits as n has bits, so that its own rounding costs half a unit. Its dividend is below
+/// 2^46; its product with n_i is at most 2 |d| 2^14 in these bits, below 2^30, by Cauchy and Schwarz, where nothing was
+/// saturated. Where |n|^2 was, the quotient is at most 2^15 and the product 2^29; where d . n was, the quotient is less than
+/// it would be.
+#[inline(always)]
+pub(crate) fn reflection(direction: [i32; 3], normal: [i32; 3], widths: Widths) -> [i32; 3] {
+    let bits = widths.coordinate() - 1;
+    let twice = 2 * i64::from(product(direction, normal, widths));
+    let quotient = ((twice << bits) / i64::from(product(normal, normal, widths).max(1))) as i32;
+    let half = (1 << bits) >> 1;
+    from_fn(|axis| widths.saturate_coordinate(direction[axis] - ((quotient * normal[axis] + half) >> bits)))
+}
+
+#[cfg(test)]
+mod tests;
