@@ -96,7 +96,7 @@ mod tests {
         // From one corner to its opposite, by both steps.
         let linear = Linear { first: [-edge; 3], right: [edge; 3], down: [edge; 3] };
         assert!(linear.holds([2, 2]));
-        let widths = Widths::new(15, 31, 62, 0).unwrap();
+        let widths = Widths::new(15, 31, 58, 0).unwrap();
         assert_eq!(linear.at(1, 1, widths), [16_383; 3]);
         assert_eq!(linear.at(0, 0, widths), [-16_383; 3]);
     }

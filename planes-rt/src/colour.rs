@@ -49,18 +49,45 @@ pub(crate) fn share_of(light: i32, share: i32) -> i32 {
     (light * share + (1 << (SHARE_BITS - 1))) >> SHARE_BITS
 }
 
-/// The cosine between a normal and the direction to the light, as a share, from `normal . light` as a product: the normal is as
-/// long as the radius, the light's vector as [`Widths::coordinate_max`].
+/// Bits of a quotient's parts: their product stays below 2^31.
+const PART_BITS: u32 = 15;
+
+/// The division of `normal . light` by a radius, for normals as long as that and a light's vector as long as
+/// [`Widths::coordinate_max`]: the cosine between them, as a share.
 ///
-/// The dot product has bits of both; the division takes the radius's away. A normal that is longer than the radius, as
-/// rounding makes it, is no brighter than 1.
-#[inline(always)]
-pub(crate) fn cosine(normal_dot_light: i32, radius: i32, widths: Widths) -> i32 {
-    // Below 2^14, in units of the light's length: brought to 11 bits by a shift to either side.
-    let along = (normal_dot_light.max(0) / radius.max(1)).min(widths.coordinate_max());
-    let bits = widths.coordinate() - 1;
-    let share = if bits > SHARE_BITS { along >> (bits - SHARE_BITS) } else { along << (SHARE_BITS - bits) };
-    share.min(SHARE_ONE.into())
+/// The divisor is the same for a whole sphere: one reciprocal serves all of its pixels. With n = `normal . light`, both factors of
+/// `(n / 2^d) (2^(14 + b) / radius)` are cut to 15 bits, where b is the bits of the radius.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Cosine {
+    /// Taken from the dot product.
+    shift: u32,
+    /// `floor(2^(13 + b) / radius)`, in (2^13, 2^14].
+    reciprocal: i32,
+    /// Taken from the product.
+    last_shift: u32,
+}
+
+impl Cosine {
+    /// For a radius below 2^14.
+    #[inline(always)]
+    pub(crate) fn new(radius: i32, widths: Widths) -> Self {
+        let radius = radius.max(1);
+        let bits = u32::BITS - radius.unsigned_abs().leading_zeros();
+        // Of the brightest dot product.
+        let most = bits + widths.coordinate() - 1;
+        let shift = most.saturating_sub(PART_BITS);
+        let reciprocal = (1 << (PART_BITS - 2 + bits)) / radius;
+        // The product is the cosine times 2^(coordinate - 1 - shift + 13 + bits), with the share's 11 bits left over.
+        let last_shift = (widths.coordinate() - 1 + PART_BITS - 2 + bits).saturating_sub(shift + SHARE_BITS);
+        Self { shift, reciprocal, last_shift }
+    }
+
+    /// The cosine, at most 1: a normal may be longer than the radius by what was rounded.
+    #[inline(always)]
+    pub(crate) fn of(self, normal_dot_light: i32) -> i32 {
+        let part = (normal_dot_light.max(0) >> self.shift).min(1 << PART_BITS);
+        ((part * self.reciprocal) >> self.last_shift).min(SHARE_ONE.into())
+    }
 }
 
 #[cfg(test)]
@@ -82,17 +109,22 @@ mod tests {
     }
 
     #[test]
-    fn cosines_run_from_none_to_all_of_the_light_in_every_width() {
+    fn cosines_are_within_two_units_in_every_width() {
         for coordinate in Widths::COORDINATE {
-            let widths = Widths::new(coordinate, 31, 62, 0).unwrap();
-            let (length, most) = (widths.coordinate_max(), i32::from(SHARE_ONE));
-            for radius in [1, length / 2, length] {
-                assert_eq!(cosine(-radius * length, radius, widths), 0);
-                assert_eq!(cosine(0, radius, widths), 0);
-                // The light's vector is a unit short of a power of two.
-                let straight = cosine(radius * length, radius, widths);
-                assert!(straight < most && straight >= most - (most >> (coordinate - 1)).max(1), "{coordinate}");
-                assert_eq!(cosine(i32::MAX, radius, widths), straight);
+            let widths = Widths::new(coordinate, 31, 58, 0).unwrap();
+            let length = widths.coordinate_max();
+            for radius in [1, 2, 3, 5, length / 2, length - 1, length] {
+                let cosine = Cosine::new(radius, widths);
+                assert_eq!((cosine.of(-radius * length), cosine.of(i32::MIN), cosine.of(0)), (0, 0, 0));
+                assert_eq!(cosine.of(i32::MAX), i32::from(SHARE_ONE));
+                let dots = (0..=1000).map(|step| (i64::from(radius * length) * step / 1000) as i32);
+                for dot in dots.chain([1, radius * length - 1]) {
+                    // In the unit of a share; the light's length stands for a power of two.
+                    let exact = i64::from(dot) << (SHARE_BITS + 10);
+                    let unit = i64::from(radius) << (coordinate - 1 + 10);
+                    let error = (i64::from(cosine.of(dot)) * unit - exact) as f64 / unit as f64;
+                    assert!((-2.0..=0.0).contains(&error), "{coordinate} {radius} {dot}: {error}");
+                }
             }
         }
     }

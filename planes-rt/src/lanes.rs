@@ -10,10 +10,12 @@
 
 use core::array::from_fn;
 
-use crate::colour::{LIGHT_MAX, Light, SHARE_ONE, cosine, share_of};
-use crate::root::digit;
+use crate::colour::{Cosine, LIGHT_MAX, Light, SHARE_ONE, share_of};
+use crate::root::{digit, pair, split};
 use crate::scene::{Outline, Scene, Sphere};
-use crate::step::{coefficients, determinant, difference, held, numerator, parameter, point, product, reflection};
+use crate::step::{
+    coefficients, determinant, difference, held, may_be_real, numerator, parameter, point, product, reflection,
+};
 use crate::widths::Widths;
 
 /// A field of all lanes.
@@ -134,8 +136,9 @@ impl<const N: usize> Lanes<N> {
             set(&mut self.origin, lane, enabled[lane], origin);
             set(&mut normal, lane, -1, difference(origin, centre, widths));
         }
+        let cosine = Cosine::new(sphere.radius.into(), widths);
         for lane in 0..N {
-            cosines[lane] = cosine(product(get(&normal, lane), scene.light, widths), sphere.radius.into(), widths);
+            cosines[lane] = cosine.of(product(get(&normal, lane), scene.light, widths));
         }
         for lane in 0..N {
             let mut left = 0;
@@ -176,19 +179,28 @@ impl<const N: usize> Search<N> {
     fn sphere(&mut self, lanes: &Lanes<N>, sphere: &Sphere, number: i32, widths: Widths) -> Option<Row<N>> {
         let radius = i32::from(sphere.radius);
         let centre = sphere.centre.map(i32::from);
-        let mut b = [0; N];
-        let mut determinants = [0; N];
-        let mut met = [0; N];
+        let (mut b, mut c, mut met) = ([0; N], [0; N], [0; N]);
+        let mut any_met = 0;
         for lane in 0..N {
             let (origin, direction) = (get(&lanes.origin, lane), get(&lanes.direction, lane));
-            let (dot, c) = coefficients(origin, direction, centre, radius * radius, widths);
-            let determinant = determinant(self.a[lane], dot, c);
-            // The sign of 64 bits as a mask.
-            let imaginary = (determinant >> 63) as i32;
-            met[lane] = self.enabled[lane] & mask(dot < 0) & !imaginary;
-            (b[lane], determinants[lane]) = (dot, determinant);
+            let (dot, rest) = coefficients(origin, direction, centre, radius * radius, widths);
+            met[lane] = self.enabled[lane] & mask(dot < 0) & mask(may_be_real(self.a[lane], dot, rest, widths));
+            any_met |= met[lane];
+            (b[lane], c[lane]) = (dot, rest);
         }
-        if !any(&met) {
+        if any_met == 0 {
+            return None;
+        }
+        // In a loop of its own: products of 64 bits would halve the vectors of the one before.
+        let mut determinants = [0; N];
+        any_met = 0;
+        for lane in 0..N {
+            determinants[lane] = determinant(self.a[lane], b[lane], c[lane]);
+            let imaginary = (determinants[lane] >> 63) as i32;
+            met[lane] &= !imaginary;
+            any_met |= met[lane];
+        }
+        if any_met == 0 {
             return None;
         }
         let roots = roots(&determinants, &met, widths);
@@ -210,19 +222,20 @@ impl<const N: usize> Search<N> {
     }
 }
 
-/// The roots of the determinants as their words hold them, a bit of all lanes at a time.
+/// The roots of the determinants as their words hold them, a digit of all lanes at a time.
 #[inline(always)]
 fn roots<const N: usize>(determinants: &[i64; N], enabled: &Row<N>, widths: Widths) -> Row<N> {
-    let mut rest: [i64; N] = from_fn(|lane| held(determinants[lane], widths) & i64::from(enabled[lane]));
-    let mut root = [0; N];
-    let mut place = widths.determinant().div_ceil(2);
-    while place > 0 {
-        place -= 1;
+    let (mut low, mut high) = ([0; N], [0; N]);
+    for lane in 0..N {
+        [low[lane], high[lane]] = split(held(determinants[lane], widths) & i64::from(enabled[lane]));
+    }
+    let (mut rest, mut root) = ([0; N], [0; N]);
+    for place in (0..widths.determinant().div_ceil(2)).rev() {
         for lane in 0..N {
-            (rest[lane], root[lane]) = digit(rest[lane], root[lane], place);
+            (rest[lane], root[lane]) = digit(rest[lane], root[lane], pair([low[lane], high[lane]], place));
         }
     }
-    root.map(|root| root as i32)
+    root
 }
 
 #[inline(always)]

@@ -1,6 +1,6 @@
 //! One pixel: what is not needed is skipped.
 
-use crate::colour::{LIGHT_MAX, Light, SHARE_ONE, cosine, share_of};
+use crate::colour::{Cosine, LIGHT_MAX, Light, SHARE_ONE, share_of};
 use crate::scene::{Outline, Scene, Sphere};
 use crate::step::{coefficients, determinant, difference, held, numerator, parameter, point, product, reflection};
 
@@ -22,7 +22,7 @@ pub fn trace(scene: &Scene<'_>, pixel: [u16; 2]) -> Light {
         };
         origin = point(origin, direction, t, widths);
         let normal = difference(origin, sphere.centre.map(i32::from), widths);
-        let cosine = cosine(product(normal, scene.light, widths), sphere.radius.into(), widths);
+        let cosine = Cosine::new(sphere.radius.into(), widths).of(product(normal, scene.light, widths));
         for channel in 0..3 {
             light[channel] += share_of(sphere.surface.sent(channel, cosine), share[channel]);
             share[channel] = share_of(share[channel], sphere.surface.mirror[channel].into());

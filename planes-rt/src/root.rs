@@ -1,29 +1,48 @@
-//! The square root of an integer, a bit of the root at a time: compare, subtract, shift (C. Woo, "Square Root by Abacus
-//! Algorithm", 1985). It is what a processor that works on single bits does, and all lanes of a tile take the same steps.
+//! The square root of an integer, a bit of the root at a time: bring down two bits, compare, subtract (C. Woo, "Square Root by
+//! Abacus Algorithm", 1985). It is what a processor that works on single bits does, and all lanes of a tile take the same
+//! steps.
 
-/// `floor(sqrt(value))`, for a value in [0, 2^bits) and bits up to 62.
+/// The widest value that there is a root of, bits: what is left of it, and its root, stay in 32.
+pub const BITS_MAX: u32 = 58;
+
+/// Digits that the lower of two words has.
+const LOW_DIGITS: u32 = 14;
+
+/// `floor(sqrt(value))`, for a value in [0, 2^bits) and bits up to [`BITS_MAX`].
 #[inline(always)]
 #[must_use]
 pub fn root(value: i64, bits: u32) -> i32 {
-    let (mut rest, mut root) = (value, 0);
-    let mut place = bits.div_ceil(2);
-    while place > 0 {
-        place -= 1;
-        (rest, root) = digit(rest, root, place);
+    let words = split(value);
+    let (mut rest, mut root) = (0, 0);
+    for place in (0..bits.div_ceil(2)).rev() {
+        (rest, root) = digit(rest, root, pair(words, place));
     }
-    root as i32
+    root
 }
 
-/// One bit of the root: what is left of the value, and the root's leading bits, both at the weight of `place`.
-///
-/// Let the root so far be R, a multiple of 2^(place + 1), and `rest = value - R^2`. Then `root` is `R 2^(place + 1)`: adding
-/// the bit 2^place takes `2 R 2^place + 4^place = root + 4^place` from the rest. All stay below 2^62.
+/// The value's lower 28 bits and its upper 30.
 #[inline(always)]
-pub(crate) fn digit(rest: i64, root: i64, place: u32) -> (i64, i64) {
-    let bit = 1 << (2 * place);
-    let taken = root + bit;
-    let fits = -i64::from(rest >= taken);
-    (rest - (taken & fits), (root >> 1) + (bit & fits))
+pub(crate) fn split(value: i64) -> [i32; 2] {
+    [(value & ((1 << (2 * LOW_DIGITS)) - 1)) as i32, (value >> (2 * LOW_DIGITS)) as i32]
+}
+
+/// The two bits of a value at the place of a digit of the root, 0 the lowest, up to 28.
+#[inline(always)]
+pub(crate) fn pair([low, high]: [i32; 2], place: u32) -> i32 {
+    if place < LOW_DIGITS { (low >> (2 * place)) & 3 } else { (high >> (2 * (place - LOW_DIGITS))) & 3 }
+}
+
+/// One more digit of the root: what is left of the value down to this place, and the root.
+///
+/// `rest = value - root^2` of the digits so far is at most twice the root, which has at most 28 bits before the last digit: so
+/// `4 rest + 3` is below 2^31.
+#[inline(always)]
+pub(crate) fn digit(rest: i32, root: i32, pair: i32) -> (i32, i32) {
+    let brought = rest << 2 | pair;
+    // (2 root + 1)^2 - (2 root)^2.
+    let taken = root << 2 | 1;
+    let fits = -i32::from(brought >= taken);
+    (brought - (taken & fits), (root << 1) - fits)
 }
 
 #[cfg(test)]
@@ -40,7 +59,7 @@ mod tests {
 
     #[test]
     fn the_ends_of_every_width_have_their_roots() {
-        for bits in 1..=62 {
+        for bits in 1..=BITS_MAX {
             let most = (1i64 << bits) - 1;
             for value in [0, 1, most / 2, most - 1, most] {
                 assert_eq!(i64::from(root(value, bits)), value.isqrt(), "{value} in {bits}");

@@ -53,17 +53,27 @@ pub(crate) fn determinant(a: i32, b: i32, c: i32) -> i64 {
     i64::from(b) * i64::from(b) - i64::from(a) * i64::from(c)
 }
 
+/// Whether the determinant may not be negative, in 32 bits: true wherever it is not, and for few others.
+///
+/// Products are cut to 15 bits and a sign, |b| upwards and a and c downwards: where a c exceeds b^2 then, it does so by all bits
+/// too. The squares are at most 2^30.
+#[inline(always)]
+pub(crate) fn may_be_real(a: i32, b: i32, c: i32, widths: Widths) -> bool {
+    let shift = widths.product().max(16) - 16;
+    let upwards = (b.abs() >> shift) + 1;
+    (a >> shift) * (c >> shift) <= upwards * upwards
+}
+
 /// A determinant as its word holds it.
 #[inline(always)]
 pub(crate) fn held(determinant: i64, widths: Widths) -> i64 {
     determinant.min(widths.determinant_max())
 }
 
-/// `-b - root`: negative where the nearer crossing is behind the origin. The root is below 2^31, -b below 2^30, so the
-/// difference fits where b is negative, and wraps to nothing that is used where it is not.
+/// `-b - root`: negative where the nearer crossing is behind the origin. The root is below 2^29 and -b below 2^30.
 #[inline(always)]
 pub(crate) fn numerator(b: i32, root: i32) -> i32 {
-    (-b).wrapping_sub(root)
+    -b - root
 }
 
 /// t with its fractional bits, rounded down, for a numerator that is not negative: `numerator 2^f / a`, the dividend below

@@ -6,6 +6,8 @@
 use core::fmt::{Display, Formatter};
 use core::ops::RangeInclusive;
 
+use crate::root::BITS_MAX;
+
 /// The widths of a tracer's words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Widths {
@@ -46,8 +48,8 @@ impl Widths {
     pub const COORDINATE: RangeInclusive<u32> = 4..=15;
     /// Of a sum of products: magnitudes up to 2^30, so that a difference of two of their products stays below 2^61.
     pub const PRODUCT: RangeInclusive<u32> = 4..=31;
-    /// Of the determinant.
-    pub const DETERMINANT: RangeInclusive<u32> = 4..=62;
+    /// Of the determinant: its root is worked out in 32 bits.
+    pub const DETERMINANT: RangeInclusive<u32> = 4..=BITS_MAX;
     /// Of t below the binary point: a product that is shifted so far stays below 2^41.
     pub const T_FRACTION: RangeInclusive<u32> = 0..=10;
 
@@ -111,7 +113,7 @@ impl Widths {
         (1 << (self.product - 1)) - 1
     }
 
-    /// The largest determinant: below 2^62.
+    /// The largest determinant: below 2^58.
     #[inline(always)]
     #[must_use]
     pub const fn determinant_max(self) -> i64 {
@@ -173,11 +175,11 @@ mod tests {
     #[test]
     fn widths_beyond_their_range_are_refused_by_name() {
         assert_eq!(Widths::new(12, 24, 36, 6), Ok(Widths::PIXEL_PLANES));
-        assert!(Widths::new(4, 4, 4, 0).is_ok() && Widths::new(15, 31, 62, 10).is_ok());
+        assert!(Widths::new(4, 4, 4, 0).is_ok() && Widths::new(15, 31, 58, 10).is_ok());
         for (refused, what) in [
             (Widths::new(16, 24, 36, 6), "components of 16 bits; there are 4 to 15"),
             (Widths::new(12, 32, 36, 6), "products of 32 bits; there are 4 to 31"),
-            (Widths::new(12, 24, 63, 6), "a determinant of 63 bits; there are 4 to 62"),
+            (Widths::new(12, 24, 59, 6), "a determinant of 59 bits; there are 4 to 58"),
             (Widths::new(12, 24, 36, 11), "a fraction of t of 11 bits; there are 0 to 10"),
         ] {
             assert_eq!(refused.map_err(|error| std::format!("{error}")), Err(what.into()));

@@ -70,7 +70,7 @@ fn points_and_reflections_stay_in_their_words_at_the_ends() {
     }
     assert_eq!(held(i64::MAX, Widths::PIXEL_PLANES), 0xf_ffff_ffff);
     assert_eq!(numerator(-5, 3), 2);
-    assert_eq!(numerator(-(1 << 30) + 1, i32::MAX), -(1 << 30));
+    assert_eq!(numerator((1 << 30) - 1, (1 << 29) - 1), 2 - (3 << 29));
 }
 
 #[test]
