@@ -43,7 +43,7 @@ impl Linear {
 
     /// The triple of a pixel: rounded to nearest, halves up, and what does not fit its words saturated.
     #[inline(always)]
-    pub(crate) fn at(&self, x: i32, y: i32, widths: Widths) -> [i32; 3] {
+    pub(crate) fn at(&self, x: i32, y: i32, widths: Widths) -> [i16; 3] {
         from_fn(|axis| {
             let sum = self.first[axis] + (x * self.right[axis] + y * self.down[axis]);
             widths.saturate_coordinate((sum + (1 << (FRACTION_BITS - 1))) >> FRACTION_BITS)

@@ -21,6 +21,9 @@ use crate::widths::Widths;
 /// A field of all lanes.
 type Row<const N: usize> = [i32; N];
 
+/// A component of all lanes.
+type Components<const N: usize> = [i16; N];
+
 /// -1 for true, 0 for false.
 #[inline(always)]
 fn mask(condition: bool) -> i32 {
@@ -56,8 +59,10 @@ pub fn trace<const N: usize>(scene: &Scene<'_>, pixels: &[[u16; 2]; N]) -> [Ligh
 /// What the lanes hold from one generation to the next.
 #[derive(Debug)]
 struct Lanes<const N: usize> {
-    origin: [Row<N>; 3],
-    direction: [Row<N>; 3],
+    origin: [Components<N>; 3],
+    direction: [Components<N>; 3],
+    /// Of the sphere that the ray has met, as long as its radius.
+    normal: [Components<N>; 3],
     /// What of the light is still seen, as shares.
     share: [Row<N>; 3],
     /// What was seen: at most white in each of less than 2^16 generations.
@@ -72,6 +77,7 @@ impl<const N: usize> Lanes<N> {
         let mut lanes = Self {
             origin: [[0; N]; 3],
             direction: [[0; N]; 3],
+            normal: [[0; N]; 3],
             share: [[SHARE_ONE.into(); N]; 3],
             light: [[0; N]; 3],
             alive: [-1; N],
@@ -97,14 +103,21 @@ impl<const N: usize> Lanes<N> {
             t: [widths.product_max(); N],
             nearest: [-1; N],
         };
-        for (number, sphere) in (0..).zip(scene.spheres) {
-            let Some(met) = search.sphere(self, sphere, number, widths) else { continue };
-            if scene.settings.outline == Outline::Literal {
-                self.shade(scene, sphere, &search.t, &met);
-                for lane in 0..N {
-                    search.enabled[lane] &= !met[lane];
+        let mut first = 0;
+        for group in scene.spheres.chunks(u32::BITS as usize) {
+            let mut candidates = search.candidates(self, group, widths);
+            while let Some(sphere) = group.get(candidates.trailing_zeros() as usize) {
+                let number = first + candidates.trailing_zeros() as i32;
+                candidates &= candidates - 1;
+                let Some(met) = search.sphere(self, sphere, number, widths) else { continue };
+                if scene.settings.outline == Outline::Literal {
+                    self.shade(scene, sphere, &search.t, &met);
+                    for lane in 0..N {
+                        search.enabled[lane] &= !met[lane];
+                    }
                 }
             }
+            first += u32::BITS as i32;
         }
         if scene.settings.outline == Outline::Nearest {
             for (number, sphere) in (0..).zip(scene.spheres) {
@@ -122,23 +135,25 @@ impl<const N: usize> Lanes<N> {
             }
             self.alive[lane] &= !missed;
         }
+        if any(&self.alive) {
+            let goes_on = self.alive;
+            self.reflect(widths, &goes_on);
+        }
     }
 
-    /// Shades and reflects the enabled lanes at a sphere.
+    /// Moves the enabled lanes to a sphere and shades them.
     #[inline(always)]
     fn shade(&mut self, scene: &Scene<'_>, sphere: &Sphere, t: &Row<N>, enabled: &Row<N>) {
         let widths = scene.settings.widths;
-        let centre = sphere.centre.map(i32::from);
-        let mut normal = [[0; N]; 3];
         let mut cosines = [0; N];
         for lane in 0..N {
             let origin = point(get(&self.origin, lane), get(&self.direction, lane), t[lane], widths);
             set(&mut self.origin, lane, enabled[lane], origin);
-            set(&mut normal, lane, -1, difference(origin, centre, widths));
+            set(&mut self.normal, lane, enabled[lane], difference(origin, sphere.centre, widths));
         }
         let cosine = Cosine::new(sphere.radius.into(), widths);
         for lane in 0..N {
-            cosines[lane] = cosine.of(product(get(&normal, lane), scene.light, widths));
+            cosines[lane] = cosine.of(product(get(&self.normal, lane), scene.light, widths));
         }
         for lane in 0..N {
             let mut left = 0;
@@ -151,11 +166,13 @@ impl<const N: usize> Lanes<N> {
             }
             self.alive[lane] &= mask(left != 0);
         }
-        if sphere.surface.mirror == [0; 3] {
-            return;
-        }
+    }
+
+    /// Reflects the enabled lanes.
+    #[inline(always)]
+    fn reflect(&mut self, widths: Widths, enabled: &Row<N>) {
         for lane in 0..N {
-            let direction = reflection(get(&self.direction, lane), get(&normal, lane), widths);
+            let direction = reflection(get(&self.direction, lane), get(&self.normal, lane), widths);
             set(&mut self.direction, lane, enabled[lane], direction);
         }
     }
@@ -174,33 +191,39 @@ struct Search<const N: usize> {
 }
 
 impl<const N: usize> Search<N> {
+    /// Which of the first 32 spheres some lane may meet, as bits: all that one does meet, and few others. There is nothing to
+    /// wait for or to guess between one sphere and the next, so that a processor works on several at once.
+    #[inline(always)]
+    fn candidates(&self, lanes: &Lanes<N>, spheres: &[Sphere], widths: Widths) -> u32 {
+        (0..u32::BITS).zip(spheres).fold(0, |candidates, (bit, sphere)| {
+            let radius = i32::from(sphere.radius);
+            let mut met = 0;
+            for lane in 0..N {
+                let (origin, direction) = (get(&lanes.origin, lane), get(&lanes.direction, lane));
+                let (b, c) = coefficients(origin, direction, sphere.centre, radius * radius, widths);
+                met |= self.enabled[lane] & mask(b < 0) & mask(may_be_real(self.a[lane], b, c, widths));
+            }
+            candidates | u32::from(met != 0) << bit
+        })
+    }
+
     /// Intersects all rays with a sphere; the lanes for which it is the nearest so far, if there are any.
     #[inline(always)]
     fn sphere(&mut self, lanes: &Lanes<N>, sphere: &Sphere, number: i32, widths: Widths) -> Option<Row<N>> {
         let radius = i32::from(sphere.radius);
-        let centre = sphere.centre.map(i32::from);
-        let (mut b, mut c, mut met) = ([0; N], [0; N], [0; N]);
-        let mut any_met = 0;
+        let (mut b, mut c) = ([0; N], [0; N]);
         for lane in 0..N {
             let (origin, direction) = (get(&lanes.origin, lane), get(&lanes.direction, lane));
-            let (dot, rest) = coefficients(origin, direction, centre, radius * radius, widths);
-            met[lane] = self.enabled[lane] & mask(dot < 0) & mask(may_be_real(self.a[lane], dot, rest, widths));
-            any_met |= met[lane];
-            (b[lane], c[lane]) = (dot, rest);
-        }
-        if any_met == 0 {
-            return None;
+            (b[lane], c[lane]) = coefficients(origin, direction, sphere.centre, radius * radius, widths);
         }
         // In a loop of its own: products of 64 bits would halve the vectors of the one before.
-        let mut determinants = [0; N];
-        any_met = 0;
+        let (mut determinants, mut met) = ([0; N], [0; N]);
         for lane in 0..N {
             determinants[lane] = determinant(self.a[lane], b[lane], c[lane]);
             let imaginary = (determinants[lane] >> 63) as i32;
-            met[lane] &= !imaginary;
-            any_met |= met[lane];
+            met[lane] = self.enabled[lane] & mask(b[lane] < 0) & !imaginary;
         }
-        if any_met == 0 {
+        if !any(&met) {
             return None;
         }
         let roots = roots(&determinants, &met, widths);
@@ -239,13 +262,14 @@ fn roots<const N: usize>(determinants: &[i64; N], enabled: &Row<N>, widths: Widt
 }
 
 #[inline(always)]
-fn get<const N: usize>(triple: &[Row<N>; 3], lane: usize) -> [i32; 3] {
+fn get<const N: usize>(triple: &[Components<N>; 3], lane: usize) -> [i16; 3] {
     [triple[0][lane], triple[1][lane], triple[2][lane]]
 }
 
 #[inline(always)]
-fn set<const N: usize>(triple: &mut [Row<N>; 3], lane: usize, enabled: i32, new: [i32; 3]) {
+fn set<const N: usize>(triple: &mut [Components<N>; 3], lane: usize, enabled: i32, new: [i16; 3]) {
+    let enabled = enabled as i16;
     for axis in 0..3 {
-        triple[axis][lane] = select(enabled, new[axis], triple[axis][lane]);
+        triple[axis][lane] = (new[axis] & enabled) | (triple[axis][lane] & !enabled);
     }
 }

@@ -21,7 +21,7 @@ pub fn trace(scene: &Scene<'_>, pixel: [u16; 2]) -> Light {
             break;
         };
         origin = point(origin, direction, t, widths);
-        let normal = difference(origin, sphere.centre.map(i32::from), widths);
+        let normal = difference(origin, sphere.centre, widths);
         let cosine = Cosine::new(sphere.radius.into(), widths).of(product(normal, scene.light, widths));
         for channel in 0..3 {
             light[channel] += share_of(sphere.surface.sent(channel, cosine), share[channel]);
@@ -37,14 +37,14 @@ pub fn trace(scene: &Scene<'_>, pixel: [u16; 2]) -> Light {
 
 /// The sphere at which a ray ends, and its t.
 #[inline(always)]
-fn meet<'a>(scene: &Scene<'a>, origin: [i32; 3], direction: [i32; 3]) -> Option<(&'a Sphere, i32)> {
+fn meet<'a>(scene: &Scene<'a>, origin: [i16; 3], direction: [i16; 3]) -> Option<(&'a Sphere, i32)> {
     let widths = scene.settings.widths;
     let a = product(direction, direction, widths);
     let mut nearest = None;
     let mut least = widths.product_max();
     for sphere in scene.spheres {
         let radius = i32::from(sphere.radius);
-        let (b, c) = coefficients(origin, direction, sphere.centre.map(i32::from), radius * radius, widths);
+        let (b, c) = coefficients(origin, direction, sphere.centre, radius * radius, widths);
         if b >= 0 {
             continue;
         }

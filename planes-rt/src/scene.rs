@@ -45,7 +45,7 @@ pub struct Settings {
 pub struct Scene<'a> {
     pub(crate) spheres: &'a [Sphere],
     /// Towards the light; as long as the largest component where it is of unit length.
-    pub(crate) light: [i32; 3],
+    pub(crate) light: [i16; 3],
     pub(crate) background: Light,
     pub(crate) camera: Camera,
     pub(crate) settings: Settings,
@@ -114,7 +114,7 @@ impl<'a> Scene<'a> {
         if size.contains(&0) || !camera.origin.holds(size) || !camera.direction.holds(size) {
             return Err(SceneError::Camera);
         }
-        Ok(Self { spheres, light: light.map(i32::from), background, camera, settings })
+        Ok(Self { spheres, light, background, camera, settings })
     }
 
     /// How it is traced.
@@ -132,7 +132,7 @@ impl<'a> Scene<'a> {
     /// The origin and the direction of a pixel's ray; places beyond the picture are those of its edge.
     #[inline(always)]
     #[must_use]
-    pub fn ray(&self, [x, y]: [u16; 2]) -> ([i32; 3], [i32; 3]) {
+    pub fn ray(&self, [x, y]: [u16; 2]) -> ([i16; 3], [i16; 3]) {
         let [width, height] = self.settings.size;
         let (x, y) = (i32::from(x.min(width - 1)), i32::from(y.min(height - 1)));
         let widths = self.settings.widths;

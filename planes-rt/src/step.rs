@@ -16,28 +16,30 @@ use crate::widths::Widths;
 
 /// `a . b` without saturation: 3 2^28 at most.
 #[inline(always)]
-fn dot(a: [i32; 3], b: [i32; 3]) -> i32 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+fn dot(a: [i16; 3], b: [i16; 3]) -> i32 {
+    let term = |axis: usize| i32::from(a[axis]) * i32::from(b[axis]);
+    term(0) + term(1) + term(2)
 }
 
 /// `a . b` as a product.
 #[inline(always)]
-pub(crate) fn product(a: [i32; 3], b: [i32; 3], widths: Widths) -> i32 {
+pub(crate) fn product(a: [i16; 3], b: [i16; 3], widths: Widths) -> i32 {
     widths.saturate_product(dot(a, b))
 }
 
-/// `a - b` as components.
+/// `a - b` as components; the difference of two is below 2^15.
 #[inline(always)]
-pub(crate) fn difference(a: [i32; 3], b: [i32; 3], widths: Widths) -> [i32; 3] {
-    from_fn(|axis| widths.saturate_coordinate(a[axis] - b[axis]))
+pub(crate) fn difference(a: [i16; 3], b: [i16; 3], widths: Widths) -> [i16; 3] {
+    let most = widths.coordinate_max() as i16;
+    from_fn(|axis| (a[axis] - b[axis]).max(-most).min(most))
 }
 
 /// b and c of a ray and a sphere, its radius squared.
 #[inline(always)]
 pub(crate) fn coefficients(
-    origin: [i32; 3],
-    direction: [i32; 3],
-    centre: [i32; 3],
+    origin: [i16; 3],
+    direction: [i16; 3],
+    centre: [i16; 3],
     radius_squared: i32,
     widths: Widths,
 ) -> (i32, i32) {
@@ -80,8 +82,9 @@ pub(crate) fn numerator(b: i32, root: i32) -> i32 {
 /// 2^41. The t of a ray without a direction is not used.
 #[inline(always)]
 pub(crate) fn parameter(numerator: i32, a: i32, widths: Widths) -> i32 {
-    let dividend = i64::from(numerator) << widths.t_fraction();
-    widths.saturate_long_product(dividend / i64::from(a.max(1)))
+    let dividend = u64::from(numerator.unsigned_abs()) << widths.t_fraction();
+    let quotient = dividend / u64::from(a.max(1).unsigned_abs());
+    quotient.min(widths.product_max().unsigned_abs().into()) as i32
 }
 
 /// o + t d, rounded to nearest.
@@ -89,10 +92,13 @@ pub(crate) fn parameter(numerator: i32, a: i32, widths: Widths) -> i32 {
 /// `t |d_i|` fits 32 bits: t is at most |b| 2^f / a. Where a was saturated, both are at most the same word, so t is at most
 /// 2^f and the product 2^24. Else a = |d|^2 and |b| <= |s| |d|, so that t |d_i| <= 2^f |s| <= 2^10 sqrt(3) 2^14 < 2^25.
 #[inline(always)]
-pub(crate) fn point(origin: [i32; 3], direction: [i32; 3], t: i32, widths: Widths) -> [i32; 3] {
+pub(crate) fn point(origin: [i16; 3], direction: [i16; 3], t: i32, widths: Widths) -> [i16; 3] {
     let bits = widths.t_fraction();
     let half = (1 << bits) >> 1;
-    from_fn(|axis| widths.saturate_coordinate(origin[axis] + ((t * direction[axis] + half) >> bits)))
+    from_fn(|axis| {
+        let along = (t * i32::from(direction[axis]) + half) >> bits;
+        widths.saturate_coordinate(i32::from(origin[axis]) + along)
+    })
 }
 
 /// d - 2 (d . n) n / |n|^2, rounded to nearest, for a normal of any length.
@@ -102,12 +108,18 @@ pub(crate) fn point(origin: [i32; 3], direction: [i32; 3], t: i32, widths: Width
 /// saturated. Where |n|^2 was, the quotient is at most 2^15 and the product 2^29; where d . n was, the quotient is less than
 /// it would be.
 #[inline(always)]
-pub(crate) fn reflection(direction: [i32; 3], normal: [i32; 3], widths: Widths) -> [i32; 3] {
+pub(crate) fn reflection(direction: [i16; 3], normal: [i16; 3], widths: Widths) -> [i16; 3] {
     let bits = widths.coordinate() - 1;
-    let twice = 2 * i64::from(product(direction, normal, widths));
-    let quotient = ((twice << bits) / i64::from(product(normal, normal, widths).max(1))) as i32;
+    let along = product(direction, normal, widths);
+    // Without signs: most processors divide small numbers quicker.
+    let dividend = u64::from(along.unsigned_abs()) << (1 + bits);
+    let quotient = (dividend / u64::from(product(normal, normal, widths).max(1).unsigned_abs())) as i32;
+    let quotient = if along < 0 { -quotient } else { quotient };
     let half = (1 << bits) >> 1;
-    from_fn(|axis| widths.saturate_coordinate(direction[axis] - ((quotient * normal[axis] + half) >> bits)))
+    from_fn(|axis| {
+        let turn = (quotient * i32::from(normal[axis]) + half) >> bits;
+        widths.saturate_coordinate(i32::from(direction[axis]) - turn)
+    })
 }
 
 #[cfg(test)]

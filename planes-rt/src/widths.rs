@@ -123,8 +123,8 @@ impl Widths {
     /// A value as a component.
     #[inline(always)]
     #[must_use]
-    pub fn saturate_coordinate(self, value: i32) -> i32 {
-        saturate(value, self.coordinate_max())
+    pub fn saturate_coordinate(self, value: i32) -> i16 {
+        saturate(value, self.coordinate_max()) as i16
     }
 
     /// A value as a sum of products.
@@ -132,14 +132,6 @@ impl Widths {
     #[must_use]
     pub fn saturate_product(self, value: i32) -> i32 {
         saturate(value, self.product_max())
-    }
-
-    /// The same of a wider value.
-    #[inline(always)]
-    #[must_use]
-    pub fn saturate_long_product(self, value: i64) -> i32 {
-        let most = i64::from(self.product_max());
-        value.max(-most).min(most) as i32
     }
 }
 
@@ -167,9 +159,7 @@ mod tests {
             [(8_388_607, 8_388_607), (8_388_608, 8_388_607), (i32::MAX, 8_388_607), (-9_000_000, -8_388_607)]
         {
             assert_eq!(text.saturate_product(value), held);
-            assert_eq!(text.saturate_long_product(value.into()), held);
         }
-        assert_eq!(text.saturate_long_product(i64::MIN), -8_388_607);
     }
 
     #[test]

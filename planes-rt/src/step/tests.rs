@@ -2,8 +2,8 @@
 
 use super::*;
 
-fn all_ends(widths: Widths) -> [i32; 7] {
-    let most = widths.coordinate_max();
+fn all_ends(widths: Widths) -> [i16; 7] {
+    let most = widths.coordinate_max() as i16;
     [-most, 1 - most, -1, 0, 1, most / 2, most]
 }
 
@@ -19,12 +19,12 @@ fn corners() -> impl Iterator<Item = Widths> {
     corners.chain([Widths::PIXEL_PLANES])
 }
 
-fn wide(a: [i32; 3], b: [i32; 3]) -> i128 {
+fn wide(a: [i16; 3], b: [i16; 3]) -> i128 {
     (0..3).map(|axis| i128::from(a[axis]) * i128::from(b[axis])).sum()
 }
 
 /// A handful of triples with components at the ends.
-fn triples(widths: Widths) -> impl Iterator<Item = [i32; 3]> {
+fn triples(widths: Widths) -> impl Iterator<Item = [i16; 3]> {
     let ends = all_ends(widths);
     (0..ends.len().pow(3)).step_by(5).map(move |n| [ends[n % 7], ends[n / 7 % 7], ends[n / 49]])
 }
@@ -35,9 +35,9 @@ fn words_that_are_wide_enough_give_the_exact_determinant_and_others_saturate() {
         let most = i128::from(widths.product_max());
         for origin in triples(widths) {
             for direction in triples(widths) {
-                for (centre, radius) in [([0; 3], 1), ([-widths.coordinate_max(); 3], widths.coordinate_max())] {
+                for (centre, radius) in [([0; 3], 1), ([-widths.coordinate_max() as i16; 3], widths.coordinate_max())] {
                     let (b, c) = coefficients(origin, direction, centre, radius * radius, widths);
-                    let edge = widths.coordinate_max();
+                    let edge = widths.coordinate_max() as i16;
                     let s = from_fn(|axis| (origin[axis] - centre[axis]).clamp(-edge, edge));
                     assert_eq!(i128::from(b), wide(direction, s).clamp(-most, most));
                     assert_eq!(i128::from(c), (wide(s, s) - i128::from(radius * radius)).clamp(-most, most));
@@ -96,8 +96,10 @@ fn a_sphere_ahead_is_met_where_arithmetic_by_hand_says() {
 fn the_determinant_of_the_text_holds_to_a_direction_times_a_radius_of_2_to_the_18() {
     let widths = Widths::PIXEL_PLANES;
     // Straight at the centre: (|d| r)^2, whatever the distance.
-    for (d, r, distance) in [(512, 511, 600), (511, 512, 2047), (1024, 255, 700)] {
-        let (b, c) = coefficients([-distance, 0, 0], [d, 0, 0], [0; 3], r * r, widths);
+    for (d, r, distance) in [(512i16, 511i16, 600), (511, 512, 2047), (1024, 255, 700)] {
+        let radius_squared = i32::from(r) * i32::from(r);
+        let (b, c) = coefficients([-distance, 0, 0], [d, 0, 0], [0; 3], radius_squared, widths);
+        let (d, r) = (i32::from(d), i32::from(r));
         let exact = i64::from(d * r) * i64::from(d * r);
         assert_eq!(determinant(d * d, b, c), exact);
         assert_eq!(held(exact, widths), exact);
