@@ -13,6 +13,7 @@ mod input;
 mod inspect;
 mod load;
 pub mod output;
+mod planes;
 mod prep;
 pub mod progress;
 mod render;

@@ -16,6 +16,7 @@ pub mod model;
 pub mod picture;
 pub mod pixels;
 pub mod plane;
+pub mod planes;
 pub mod prepare;
 pub mod reference;
 pub mod render;

@@ -56,7 +56,7 @@ const PART_BITS: u32 = 15;
 /// [`Widths::coordinate_max`]: the cosine between them, as a share.
 ///
 /// The divisor is the same for a whole sphere: one reciprocal serves all of its pixels. With n = `normal . light`, both factors of
-/// `(n / 2^d) (2^(14 + b) / radius)` are cut to 15 bits, where b is the bits of the radius.
+/// `(n / 2^shift) (2^(13 + b) / radius)` are cut to 15 bits, where b is the bits of the radius.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Cosine {
     /// Taken from the dot product.

@@ -8,6 +8,8 @@
 //! State stands in arrays by field, of N lanes; a mask is -1 where a lane is enabled and 0 where it is not. Loops over the lanes
 //! have no branch, so that a compiler makes vectors of them; where no lane is enabled, a step is left out.
 
+#![expect(clippy::needless_range_loop, reason = "a lane is a place in many arrays at once")]
+
 use core::array::from_fn;
 
 use crate::colour::{Cosine, LIGHT_MAX, Light, SHARE_ONE, share_of};
@@ -147,7 +149,9 @@ impl<const N: usize> Lanes<N> {
         let widths = scene.settings.widths;
         let mut cosines = [0; N];
         for lane in 0..N {
-            let origin = point(get(&self.origin, lane), get(&self.direction, lane), t[lane], widths);
+            // A lane that met nothing has the largest t, which is too far.
+            let t = t[lane] & enabled[lane];
+            let origin = point(get(&self.origin, lane), get(&self.direction, lane), t, widths);
             set(&mut self.origin, lane, enabled[lane], origin);
             set(&mut self.normal, lane, enabled[lane], difference(origin, sphere.centre, widths));
         }
