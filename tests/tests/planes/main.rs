@@ -68,11 +68,12 @@ fn an_oracle_of_another_scene_is_told_apart() {
             let (origin, direction) = scene.ray(pixel);
             let expected = exact::way(&moved, &parts.settings, origin, direction);
             let (_, way) = way(&scene, pixel);
-            way.iter().zip(&expected).any(|(met, expected)| met.point.map(BigInt::from) != expected.2)
+            way.iter().zip(&expected).any(|(met, expected)| met.direction.map(BigInt::from) != expected.3)
         })
     };
     let told = (0..50).filter(|_| differs(&scenes::scene(&mut random, 12, SIZE))).count();
-    assert!(told > 25, "{told}");
+    // Many rays meet nothing, or move by less than their words tell.
+    assert!(told > 10, "{told}");
 }
 
 /// All pixels by tiles of N lanes, one after the other in rows.
