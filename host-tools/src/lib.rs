@@ -14,6 +14,7 @@ pub mod grid;
 pub mod import;
 pub mod model;
 pub mod picture;
+pub mod pixel_planes;
 pub mod pixels;
 pub mod plane;
 pub mod planes;
