@@ -69,8 +69,9 @@ fn the_text_s_algorithm_fits_208_bits_with_the_ray_swapped_out() {
             let [out, back] = plan.swapped[&Value::Direction];
             assert!(out > 0 && back > 0 && plan.swapped.contains_key(&Value::Origin), "{:?}", plan.swapped);
             let at_the_root = plan.moments.iter().filter(|moment| moment.step == "root");
+            // There is room for half of the ray at most.
             for moment in at_the_root {
-                assert!(!moment.held.contains(&Value::Origin) && !moment.held.contains(&Value::Direction));
+                assert!(!(moment.held.contains(&Value::Origin) && moment.held.contains(&Value::Direction)));
             }
             // The remark on the next machine: 256 bytes a pixel. Nothing has to go.
             let roomy = Store { local_bits: 2048, ..Store::default() };
