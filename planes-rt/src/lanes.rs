@@ -10,8 +10,6 @@
 
 #![expect(clippy::needless_range_loop, reason = "a lane is a place in many arrays at once")]
 
-use core::array::from_fn;
-
 use crate::colour::{Cosine, LIGHT_MAX, Light, SHARE_ONE, share_of};
 use crate::root::{digit, pair, split};
 use crate::scene::{Outline, Scene, Sphere};
@@ -55,7 +53,13 @@ pub fn trace<const N: usize>(scene: &Scene<'_>, pixels: &[[u16; 2]; N]) -> [Ligh
         }
         lanes.generation(scene);
     }
-    from_fn(|lane| lanes.light.map(|row| row[lane].min(LIGHT_MAX.into()) as u16))
+    let mut light = [[0; 3]; N];
+    for lane in 0..N {
+        for channel in 0..3 {
+            light[lane][channel] = lanes.light[channel][lane].min(LIGHT_MAX.into()) as u16;
+        }
+    }
+    light
 }
 
 /// What the lanes hold from one generation to the next.
@@ -96,15 +100,11 @@ impl<const N: usize> Lanes<N> {
     #[inline(always)]
     fn generation(&mut self, scene: &Scene<'_>) {
         let widths = scene.settings.widths;
-        let mut search = Search {
-            a: from_fn(|lane| {
-                let direction = get(&self.direction, lane);
-                product(direction, direction, widths)
-            }),
-            enabled: self.alive,
-            t: [widths.product_max(); N],
-            nearest: [-1; N],
-        };
+        let mut search = Search { a: [0; N], enabled: self.alive, t: [widths.product_max(); N], nearest: [-1; N] };
+        for lane in 0..N {
+            let direction = get(&self.direction, lane);
+            search.a[lane] = product(direction, direction, widths);
+        }
         let mut first = 0;
         for group in scene.spheres.chunks(u32::BITS as usize) {
             let mut candidates = search.candidates(self, group, widths);
@@ -123,7 +123,10 @@ impl<const N: usize> Lanes<N> {
         }
         if scene.settings.outline == Outline::Nearest {
             for (number, sphere) in (0..).zip(scene.spheres) {
-                let met = from_fn(|lane| mask(search.nearest[lane] == number));
+                let mut met = [0; N];
+                for lane in 0..N {
+                    met[lane] = mask(search.nearest[lane] == number);
+                }
                 if any(&met) {
                     self.shade(scene, sphere, &search.t, &met);
                 }
