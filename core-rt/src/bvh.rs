@@ -9,14 +9,19 @@
 //! The nearest hit is the smallest (t, id), in exact order, with the id that the triangle has in its file. So the answer
 //! does not depend on the order of the visit, and nothing is pruned at equal t.
 
+mod drawing;
+mod together;
+
 use core::cmp::Ordering;
 use core::num::NonZeroU32;
 
 use heapless::VecView;
 
+use crate::camera::Camera;
 use crate::kernel::{ANY_OCTANT, Bounds, Kernel, NONE};
 use crate::mesh::Mesh;
-use crate::profile::{Need, Profile};
+use crate::profile::{Need, Prefer, Profile};
+use crate::render::Tile;
 use crate::section::Integers;
 use crate::stats::Stats;
 
@@ -77,41 +82,25 @@ pub trait Intersect<K: Kernel> {
     /// Whether anything that is hit blocks, by its index. Whatever is hit is asked about once.
     fn any(&self, ray: &K::Ray, stack: &mut Stack<K>, stats: &mut impl Stats, blocks: impl FnMut(u32) -> bool) -> bool;
 
-    /// The nearest hits of a tile of rays, row by row; a kernel that can may walk the tree once for all of them.
+    /// The nearest hits of a tile of rays, row by row, given the ray of a pixel. Where they are those of a camera, from its eye,
+    /// a kernel that can may walk the tree once for many of them, with the room of [`tile::ROOM`](crate::tile::ROOM) bytes.
+    #[expect(clippy::too_many_arguments, reason = "the storage of a tile has three parts")]
     fn closest_tile(
         &self,
-        rays: impl Iterator<Item = Option<K::Ray>>,
+        camera: Option<&Camera<K::Word>>,
+        ray: impl Fn([u16; 2]) -> Option<K::Ray>,
+        tile: Tile,
         hits: &mut [u32],
+        room: &mut [u8],
         stack: &mut Stack<K>,
         stats: &mut impl Stats,
-    ) {
-        for (ray, hit) in rays.zip(hits) {
-            *hit = ray.as_ref().map_or(NONE, |ray| self.closest(ray, stack, stats));
-        }
-    }
+    );
 }
 
 type RayOf<P> = <<P as Profile>::Kernel as Kernel>::Ray;
 type DepthOf<P> = <<P as Profile>::Kernel as Kernel>::Depth;
 type PathOf<P> = <<P as Profile>::Kernel as Kernel>::Path;
 type DistanceOf<P> = <<P as Profile>::Kernel as Kernel>::Distance;
-
-/// What a leaf holds.
-enum Primitive<'a, K: Kernel> {
-    Triangle(&'a K::Triangle),
-    /// A sphere, and whether the ray starts on it.
-    Sphere(&'a K::Sphere, bool),
-}
-
-impl<K: Kernel> Primitive<'_, K> {
-    #[inline(always)]
-    fn intersect(self, ray: &K::Ray) -> Option<K::Depth> {
-        match self {
-            Self::Triangle(triangle) => K::intersect(ray, triangle),
-            Self::Sphere(sphere, leaves) => K::intersect_sphere(ray, sphere, leaves),
-        }
-    }
-}
 
 /// A tree over a blob's sections.
 #[derive(Clone, Copy, Debug)]
@@ -143,7 +132,11 @@ impl<'a, P: Profile> Bvh<'a, P> {
     #[inline]
     #[must_use]
     pub fn id(&self, index: u32) -> u32 {
-        if P::NEEDS.has(Need::Ids) && !self.ids.is_empty() { self.ids.get(index) } else { self.triangles.id(index) }
+        let are_apart = match (P::NEEDS.has(Need::Ids), P::NEEDS.has(Need::IdsInRecords)) {
+            (true, true) => !self.ids.is_empty(),
+            (apart, _) => apart,
+        };
+        if are_apart { self.ids.get(index) } else { self.triangles.id(index) }
     }
 
     /// The boxes of all primitives, triangles first.
@@ -152,8 +145,18 @@ impl<'a, P: Profile> Bvh<'a, P> {
         self.triangles.bounds().chain(spheres.iter().map(|sphere| P::Kernel::ball(sphere).bounds()))
     }
 
+    /// Whether a hit is nearer than another: the smaller (t, id).
+    #[inline(always)]
+    fn nearer(&self, (index, depth): (u32, &DepthOf<P>), (other, than): (u32, &DepthOf<P>)) -> bool {
+        match P::Kernel::order(depth, than) {
+            Ordering::Less => true,
+            Ordering::Equal => self.id(index) < self.id(other),
+            Ordering::Greater => false,
+        }
+    }
+
     /// Tests every primitive that may be hit before the limit that `visit` returns, nearest boxes first, until it returns
-    /// none. What it is given is the primitive's index and its hit.
+    /// none. What it is given is the primitive's index and its hit, if there is one.
     #[inline(always)]
     fn walk(
         &self,
@@ -161,7 +164,7 @@ impl<'a, P: Profile> Bvh<'a, P> {
         path: &PathOf<P>,
         stack: &mut Stack<P::Kernel>,
         stats: &mut impl Stats,
-        mut visit: impl FnMut(u32, Primitive<'_, P::Kernel>) -> Option<DistanceOf<P>>,
+        mut visit: impl FnMut(u32, Option<DepthOf<P>>) -> Option<DistanceOf<P>>,
     ) {
         let mut limit = P::Kernel::reach(ray, path);
         let (skip, octant) = (P::Kernel::skip(ray), P::Kernel::octant(path));
@@ -176,7 +179,7 @@ impl<'a, P: Profile> Bvh<'a, P> {
                 for (index, sphere) in (first..).zip(run) {
                     stats.sphere();
                     // A ray that starts on a sphere may meet it again, from inside.
-                    match visit(index, Primitive::Sphere(sphere, index == skip)) {
+                    match visit(index, P::Kernel::intersect_sphere(ray, sphere, index == skip)) {
                         Some(nearer) => limit = nearer,
                         None => return,
                     }
@@ -185,7 +188,7 @@ impl<'a, P: Profile> Bvh<'a, P> {
                 for index in (first..first + count).filter(|&index| index != skip) {
                     stats.triangle();
                     let Some(triangle) = self.triangles.assemble(index) else { return };
-                    match visit(index, Primitive::Triangle(&triangle)) {
+                    match visit(index, P::Kernel::intersect(ray, &triangle)) {
                         Some(nearer) => limit = nearer,
                         None => return,
                     }
@@ -194,7 +197,7 @@ impl<'a, P: Profile> Bvh<'a, P> {
                 for (index, triangle) in (first..).zip(self.triangles.run(first, count)) {
                     if index != skip {
                         stats.triangle();
-                        match visit(index, Primitive::Triangle(triangle)) {
+                        match visit(index, P::Kernel::intersect(ray, triangle)) {
                             Some(nearer) => limit = nearer,
                             None => return,
                         }
@@ -206,7 +209,7 @@ impl<'a, P: Profile> Bvh<'a, P> {
     }
 
     /// The first leaf at or below `child`, or below what waits, that the ray enters before the limit, packed: a leaf is not
-    /// word 0. One copy an octant, of the descent alone: it is most of the work and little code.
+    /// word 0. One copy an octant, of the descent alone: it is most of the work and little code. One for all where size is preferred.
     #[inline(always)]
     fn leaf(
         &self,
@@ -217,6 +220,9 @@ impl<'a, P: Profile> Bvh<'a, P> {
         stack: &mut Stack<P::Kernel>,
         stats: &mut impl Stats,
     ) -> Option<NonZeroU32> {
+        if P::PREFER == Prefer::Size {
+            return self.leaf_in::<ANY_OCTANT>(path, child, limit, stack, stats);
+        }
         match octant {
             0 => self.leaf_in::<0>(path, child, limit, stack, stats),
             1 => self.leaf_in::<1>(path, child, limit, stack, stats),
@@ -234,10 +240,24 @@ impl<'a, P: Profile> Bvh<'a, P> {
     fn leaf_in<const OCTANT: usize>(
         &self,
         path: &PathOf<P>,
+        child: u32,
+        limit: DistanceOf<P>,
+        stack: &mut Stack<P::Kernel>,
+        stats: &mut impl Stats,
+    ) -> Option<NonZeroU32> {
+        let enter = |node: &_, child| P::Kernel::enter::<OCTANT>(path, node, child, limit);
+        self.descend(child, limit, stack, stats, enter)
+    }
+
+    /// The first leaf at or below `child`, or below what waits, that is entered before the limit.
+    #[inline(always)]
+    fn descend(
+        &self,
         mut child: u32,
         limit: DistanceOf<P>,
         stack: &mut Stack<P::Kernel>,
         stats: &mut impl Stats,
+        enter: impl Fn(&<P::Kernel as Kernel>::Node, usize) -> Option<DistanceOf<P>>,
     ) -> Option<NonZeroU32> {
         loop {
             let index = match Child::unpack(child) {
@@ -249,7 +269,7 @@ impl<'a, P: Profile> Bvh<'a, P> {
             stats.boxes(2);
             let [first, second] = P::Kernel::children(node);
             // The second test stands here twice: the code knows of the first what it found, and keeps no flag.
-            let enter = |child| P::Kernel::enter::<OCTANT>(path, node, child, limit);
+            let enter = |child| enter(node, child);
             child = if let Some(a) = enter(0) {
                 if let Some(b) = enter(1) {
                     let (near, far) = if b < a { (second, (first, a)) } else { (first, (second, b)) };
@@ -265,6 +285,15 @@ impl<'a, P: Profile> Bvh<'a, P> {
                 waiting::<P::Kernel>(stack, limit)?
             };
         }
+    }
+}
+
+/// The ray, prepared for the boxes of [`Bvh::leaf`].
+#[inline(always)]
+fn path<P: Profile>(ray: &RayOf<P>) -> PathOf<P> {
+    match P::PREFER {
+        Prefer::Speed => P::Kernel::path(ray),
+        Prefer::Size => P::Kernel::path_of_any(ray),
     }
 }
 
@@ -284,23 +313,15 @@ impl<P: Profile> Intersect<P::Kernel> for Bvh<'_, P> {
     fn closest(&self, ray: &RayOf<P>, stack: &mut Stack<P::Kernel>, stats: &mut impl Stats) -> u32 {
         let mut best: Option<DepthOf<P>> = None;
         let mut hit = NONE;
-        let path = P::Kernel::path(ray);
+        let path = path::<P>(ray);
         let mut limit = P::Kernel::reach(ray, &path);
-        self.walk(ray, &path, stack, stats, |index, primitive| {
-            if let Some(depth) = primitive.intersect(ray) {
-                let nearer = match &best {
-                    None => true,
-                    Some(best) => match P::Kernel::order(&depth, best) {
-                        Ordering::Less => true,
-                        Ordering::Equal => self.id(index) < self.id(hit),
-                        Ordering::Greater => false,
-                    },
-                };
-                if nearer {
-                    limit = P::Kernel::limit(&path, &depth);
-                    best = Some(depth);
-                    hit = index;
-                }
+        self.walk(ray, &path, stack, stats, |index, depth| {
+            if let Some(depth) = depth
+                && best.as_ref().is_none_or(|best| self.nearer((index, &depth), (hit, best)))
+            {
+                limit = P::Kernel::limit(&path, &depth);
+                best = Some(depth);
+                hit = index;
             }
             Some(limit)
         });
@@ -315,13 +336,26 @@ impl<P: Profile> Intersect<P::Kernel> for Bvh<'_, P> {
         mut blocks: impl FnMut(u32) -> bool,
     ) -> bool {
         let mut hit = false;
-        let path = P::Kernel::path(ray);
+        let path = path::<P>(ray);
         let limit = P::Kernel::reach(ray, &path);
-        self.walk(ray, &path, stack, stats, |index, primitive| {
-            hit = primitive.intersect(ray).is_some() && blocks(index);
+        self.walk(ray, &path, stack, stats, |index, depth| {
+            hit = depth.is_some() && blocks(index);
             (!hit).then_some(limit)
         });
         hit
+    }
+
+    fn closest_tile(
+        &self,
+        camera: Option<&Camera<<P::Kernel as Kernel>::Word>>,
+        ray: impl Fn([u16; 2]) -> Option<RayOf<P>>,
+        tile: Tile,
+        hits: &mut [u32],
+        room: &mut [u8],
+        stack: &mut Stack<P::Kernel>,
+        stats: &mut impl Stats,
+    ) {
+        self.tile(camera, ray, tile, hits, room, stack, stats);
     }
 }
 

@@ -60,7 +60,10 @@ impl CameraHeader {
         let [right, bottom] = used.size.map(|side| 2 * i64::from(side.saturating_sub(1)) + out);
         let axes = self.first.iter().zip(&self.right).zip(&self.down);
         axes.map(move |((&a, &b), &c)| {
-            [(-out, -out), (right, -out), (-out, bottom), (right, bottom)].map(|place| sum_2x(a, b, c, place))
+            core::array::from_fn(|corner| {
+                let place = |bit: usize, end: i64| if corner & bit == 0 { -out } else { end };
+                sum_2x(a, b, c, (place(1, right), place(2, bottom)))
+            })
         })
     }
 
@@ -93,7 +96,23 @@ impl CameraHeader {
 /// `2 a + x b + y c`; `None` where it does not fit. Out of line: twelve of them are asked for, once a scene.
 #[inline(never)]
 fn sum_2x(a: i64, b: i64, c: i64, (x, y): (i64, i64)) -> Option<i64> {
-    a.checked_mul(2)?.checked_add(b.checked_mul(x)?.checked_add(c.checked_mul(y)?)?)
+    a.checked_add(a)?.checked_add(times(b, x)?.checked_add(times(c, y)?)?)
+}
+
+/// Out of line, since a product that may not fit is much code on a machine of 32 bits.
+#[inline(never)]
+fn times(a: i64, b: i64) -> Option<i64> {
+    a.checked_mul(b)
+}
+
+/// Coefficients as words, with something added; `None` where one does not fit.
+#[inline(never)]
+fn words<W: Word>(coefficients: &Triple<i64>, added: i64) -> Option<Triple<W>> {
+    let mut words = [W::ZERO; 3];
+    for (word, &c) in words.iter_mut().zip(coefficients) {
+        *word = W::from_i64(c + added)?;
+    }
+    Some(words)
 }
 
 /// A camera in a kernel's words.
@@ -120,8 +139,11 @@ impl<W: Word> Camera<W> {
     pub fn new<K: Kernel<Word = W>>(header: &CameraHeader, used: Use) -> Option<Self> {
         let bits = if used.parallel { K::GRID_BITS + 1 } else { K::DIRECTION_BITS };
         let fraction_bits = u32::from(header.fraction_bits);
-        let bound = 1i64.checked_shl(bits + fraction_bits).filter(|&b| b > 0)?;
-        W::from_i64(bound.checked_mul(2)? - 1)?;
+        // 2 B is below 2^62, and less one it is a word.
+        if bits + fraction_bits + 1 > (8 * size_of::<W>() as u32 - 1).min(62) {
+            return None;
+        }
+        let bound = 1i64 << (bits + fraction_bits);
         let half = (1i64 << fraction_bits) >> 1;
         for ends_2x in header.ends_2x(used) {
             for end_2x in ends_2x {
@@ -134,14 +156,12 @@ impl<W: Word> Camera<W> {
         if header.along.iter().any(|c| c.unsigned_abs() > largest) {
             return None;
         }
-        let words = |v: &Triple<i64>| Some([W::from_i64(v[0])?, W::from_i64(v[1])?, W::from_i64(v[2])?]);
-        let rounded = |c: i64| c + half; // of the sums' bound
         Some(Self {
             eye: header.eye.map(W::from_i32),
             along: header.along.map(W::from_i32),
-            first: words(&header.first.map(rounded))?,
-            right: words(&header.right)?,
-            down: words(&header.down)?,
+            first: words(&header.first, half)?, // of the sums' bound
+            right: words(&header.right, 0)?,
+            down: words(&header.down, 0)?,
             fraction_bits,
         })
     }
@@ -164,6 +184,17 @@ impl<W: Word> Camera<W> {
             component(self.first[1], self.right[1], self.down[1]),
             component(self.first[2], self.right[2], self.down[2]),
         ]
+    }
+
+    /// What [`Camera::direction`] rounds to nearest: fractional bits, and with so many the value in a pixel and what a step to
+    /// the right and one down adds.
+    #[inline]
+    #[must_use]
+    pub fn linear(&self, x: u16, y: u16) -> (u32, [Triple<W>; 3]) {
+        let (x, y) = (W::from_i32(x.into()), W::from_i32(y.into()));
+        let half = (W::ONE << self.fraction_bits) >> 1;
+        let component = |axis: usize| self.first[axis] + (x * self.right[axis] + y * self.down[axis]) - half;
+        (self.fraction_bits, [[component(0), component(1), component(2)], self.right, self.down])
     }
 
     /// The origin and the direction of the parallel ray through a pixel.

@@ -159,7 +159,8 @@ impl Colour for Rgb16 {
 
     /// `mantissa cosine` is at most 65535 * 65536 < 2^32 in Q32 of the scaled light; the shift, in 1..=31 by
     /// [`Radiance::EXPONENTS`], brings it to Q16. Rounded to nearest: a truncated sum would darken.
-    #[inline]
+    #[cfg_attr(not(prefer_size), inline)]
+    #[cfg_attr(prefer_size, inline(never))]
     fn lit(radiance: &Radiance, cosine: U16F16) -> Self {
         // Negative exponents down to -15 and positive ones up to 15, so no shift is out of range.
         let shift = (16 - i32::from(radiance.exponent)).clamp(1, 31) as u32;

@@ -13,6 +13,7 @@ use crate::num::{Triple, Word};
 use crate::record::Record;
 use crate::space::Space;
 use crate::sphere::Ball;
+use crate::tile::Beam;
 
 /// The corners of a triangle in grid units.
 pub type Vertices = [Triple<i32>; 3];
@@ -27,6 +28,9 @@ pub struct Bounds {
 }
 
 impl Bounds {
+    /// The box of no point: [`Bounds::union`] with it changes nothing.
+    pub const NOTHING: Self = Self { low: [i32::MAX; 3], high: [i32::MIN; 3] };
+
     /// Whether `other` lies within.
     #[must_use]
     pub fn contains(&self, other: &Self) -> bool {
@@ -46,10 +50,16 @@ impl Bounds {
 
     /// The box of two boxes.
     #[must_use]
+    #[inline(never)]
     pub fn union(&self, other: &Self) -> Self {
-        let pick =
-            |f: fn(i32, i32) -> i32, a: Triple<i32>, b: Triple<i32>| [f(a[0], b[0]), f(a[1], b[1]), f(a[2], b[2])];
-        Self { low: pick(i32::min, self.low, other.low), high: pick(i32::max, self.high, other.high) }
+        let mut both = *self;
+        for (low, other) in both.low.iter_mut().zip(other.low) {
+            *low = other.min(*low);
+        }
+        for (high, other) in both.high.iter_mut().zip(other.high) {
+            *high = other.max(*high);
+        }
+        both
     }
 
     /// The box of three corners.
@@ -137,6 +147,8 @@ pub trait Kernel: Copy + Debug + Default + Send + Sync + 'static {
     type Distance: Copy + Debug + PartialOrd + Send;
     /// Where a ray hits a triangle or a sphere, exactly (as exactly as the kernel knows).
     type Depth: Copy + Debug;
+    /// The camera rays of a tile, where they walk the tree together; [`NoBeam`](crate::tile::NoBeam) where they do not.
+    type Beam: Beam<Self>;
 
     /// The settings for a scene of these triangles, where a user may ask for some; `None` where the kernel lacks what is
     /// asked for, or cannot hold it. Of the host, in the integers of the device.
@@ -195,6 +207,11 @@ pub trait Kernel: Copy + Debug + Default + Send + Sync + 'static {
     fn skip(ray: &Self::Ray) -> u32;
     /// The ray, prepared for boxes.
     fn path(ray: &Self::Ray) -> Self::Path;
+    /// The ray, prepared for boxes that are tested in the way that serves all octants.
+    #[inline(always)]
+    fn path_of_any(ray: &Self::Ray) -> Self::Path {
+        Self::path(ray)
+    }
     /// Whether [`Kernel::octant`] may be [`ANY_OCTANT`], so that the descent is compiled for it too.
     const ANY_OCTANT: bool = false;
     /// Which way a ray goes: bit a is set where it moves down along axis a. [`ANY_OCTANT`] for a ray whose boxes are tested

@@ -15,8 +15,8 @@
 //! scene.
 //!
 //! # Tracing
-//! [`camera`] rays go through the [`bvh`] to the triangles of a [`mesh`], hits are shaded, and [`render`] brings tiles to a sink. A
-//! [`profile`] says what is compiled in; [`stats`] count the work.
+//! [`camera`] rays go through the [`bvh`] to the triangles of a [`mesh`], a [`tile`] at a time, hits are shaded, and
+//! [`render`] brings tiles to a sink. A [`profile`] says what is compiled in; [`stats`] count the work.
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -46,4 +46,5 @@ pub mod sphere;
 mod srgb;
 pub mod stats;
 pub mod texture;
+pub mod tile;
 pub mod whitted;

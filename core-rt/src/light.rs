@@ -14,16 +14,9 @@ use crate::shade::{RayOf, Smooth, SpaceOf, UnitOf};
 use crate::space::{self, Scalar, Space};
 use crate::stats::{RayKind, Stats};
 
-/// Light that has arrived.
-#[derive(Debug)]
-pub(crate) struct Arriving<P: Profile> {
-    /// How strong it is, under a right angle.
-    pub(crate) light: space::Light<SpaceOf<P>>,
-    /// The direction to where it comes from.
-    pub(crate) towards: UnitOf<P>,
-    /// The cosine between that and the shading normal.
-    pub(crate) cosine: Scalar<SpaceOf<P>>,
-}
+/// Light that has arrived: how strong it is under a right angle, the direction to where it comes from, and the cosine
+/// between that and the shading normal.
+type Arriving<P> = (space::Light<SpaceOf<P>>, UnitOf<P>, Scalar<SpaceOf<P>>);
 
 /// What arrives of a light, if anything does.
 pub(crate) fn arriving<P: Profile>(
@@ -47,7 +40,7 @@ pub(crate) fn arriving<P: Profile>(
     }
     let cosine = SpaceOf::<P>::cosine(smooth.map_or(surface.normal, |smooth| smooth.normal), towards)?;
     let mut tint = WHITE;
-    if P::NEEDS.has(Need::Shadows) {
+    if scene.shadows() {
         stats.ray(RayKind::Shadow);
         let from = &Surface { point: smooth.map_or(surface.point, |smooth| smooth.lifted), ..*surface };
         let shadow = if is_point {
@@ -80,7 +73,7 @@ pub(crate) fn arriving<P: Profile>(
     if P::NEEDS.has(Need::TintedShadow) {
         light_here = <SpaceOf<P> as Space>::Colour::tinted(light_here, &tint);
     }
-    Some(Arriving { light: light_here, towards, cosine })
+    Some((light_here, towards, cosine))
 }
 
 /// What a primitive between leaves of light: its tint once for each crossing of its surface, two for a sphere but where the

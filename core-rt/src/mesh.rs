@@ -87,11 +87,14 @@ impl<'a, P: Profile> Mesh<'a, P> {
         P::Kernel::assemble(self.settings, [vertex(a)?, vertex(b)?, vertex(c)?])
     }
 
-    /// The record of a triangle, its material left out where vertices are shared; `None` where there is none.
+    /// What is made of the record of a triangle, its material left out where vertices are shared; `None` where there is none.
     #[inline(always)]
-    #[must_use]
-    pub fn get(&self, index: u32) -> Option<<P::Kernel as Kernel>::Triangle> {
-        if self.is_shared() { self.assemble(index) } else { self.records.get(index as usize).copied() }
+    pub fn of<T>(&self, index: u32, made: impl FnOnce(&<P::Kernel as Kernel>::Triangle) -> T) -> Option<T> {
+        if self.is_shared() {
+            self.assemble(index).as_ref().map(made)
+        } else {
+            self.records.get(index as usize).map(made)
+        }
     }
 
     /// The material of a triangle; `None` where there is none.
@@ -100,7 +103,8 @@ impl<'a, P: Profile> Mesh<'a, P> {
     pub fn material(&self, index: u32) -> Option<u32> {
         if !self.is_shared() {
             let number = P::Kernel::material(self.records.get(index as usize)?);
-            return Some(number & ((1 << self.material_bits) - 1));
+            let has_id = P::NEEDS.has(Need::IdsInRecords);
+            return Some(if has_id { number & ((1 << self.material_bits) - 1) } else { number });
         }
         match self.materials.is_empty() {
             true => (index < self.len()).then_some(0),

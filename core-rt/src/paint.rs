@@ -76,8 +76,8 @@ impl<'a> Paint<'a> {
     }
 
     /// Checks what the sections of a scene of so many triangles say.
-    pub(crate) fn check(&self, triangles: u32) -> Result<(), BlobError> {
-        if let Some(index) = (0..triangles).find(|&index| !self.exists(index)) {
+    pub(crate) fn check<P: Profile>(&self, triangles: u32) -> Result<(), BlobError> {
+        if let Some(index) = (0..triangles).find(|&index| !self.exists::<P>(index)) {
             return Err(BlobError::Triangle { index });
         }
         if self.in_range() { Ok(()) } else { Err(BlobError::Shading) }
@@ -98,9 +98,12 @@ impl<'a> Paint<'a> {
     }
 
     /// Whether the coordinates and the colours of a triangle exist, as far as there are any.
-    fn exists(&self, triangle: u32) -> bool {
-        let uvs = self.uv_indices.is_empty() || self.uv_indices.is_none(triangle) || self.uvs_of(triangle).is_some();
-        uvs && (self.colour_indices.is_empty() || self.colours_of(triangle).is_some())
+    fn exists<P: Profile>(&self, triangle: u32) -> bool {
+        let uvs = || self.uv_indices.is_none(triangle) || self.uvs_of(triangle).is_some();
+        (!P::NEEDS.has(Need::Texture) || self.uv_indices.is_empty() || uvs())
+            && (!P::NEEDS.has(Need::VertexColours)
+                || self.colour_indices.is_empty()
+                || self.colours_of(triangle).is_some())
     }
 
     /// Whether every coordinate is in range and every texture is among the texels.

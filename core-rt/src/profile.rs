@@ -74,15 +74,21 @@ pub enum Need {
     Schlick = 1 << 28,
     /// Triangles with a record each.
     WholeTriangles = 1 << 29,
+    /// More than one light.
+    SeveralLights = 1 << 30,
     /// Triangles that share vertices.
     SharedVertices = 1 << 31,
+    /// Rays that go on from surfaces and are followed. Without it, those see the background.
+    Bounces = 1 << 32,
     /// Ids apart from what they are of.
-    Ids = 1 << 32,
+    Ids = 1 << 33,
+    /// Ids beside the materials of records.
+    IdsInRecords = 1 << 34,
 }
 
 impl Need {
     /// All of them.
-    pub const ALL: [Self; 32] = [
+    pub const ALL: [Self; 35] = [
         Self::PointLight,
         Self::DirectionalLight,
         Self::Shadows,
@@ -113,9 +119,18 @@ impl Need {
         Self::Gray8,
         Self::Schlick,
         Self::WholeTriangles,
+        Self::SeveralLights,
         Self::SharedVertices,
+        Self::Bounces,
         Self::Ids,
+        Self::IdsInRecords,
     ];
+
+    /// Its bit in a header: 0 to 63.
+    #[must_use]
+    pub const fn bit(self) -> u32 {
+        (self as u64).trailing_zeros()
+    }
 }
 
 impl Display for Need {
@@ -152,7 +167,10 @@ impl Display for Need {
             Self::Schlick => "reflections after Schlick",
             Self::WholeTriangles => "triangles with records",
             Self::SharedVertices => "shared vertices",
+            Self::SeveralLights => "several lights",
+            Self::Bounces => "rays that go on",
             Self::Ids => "ids of their own",
+            Self::IdsInRecords => "ids in records",
         })
     }
 }
@@ -204,10 +222,17 @@ impl Needs {
         if wanted { Self(self.0 | need as u64) } else { self }
     }
 
+    /// The set without a need.
+    #[must_use]
+    pub const fn without(self, need: Need) -> Self {
+        Self(self.0 & !(need as u64))
+    }
+
     /// The first need that `self` has and `other` lacks.
     #[must_use]
+    #[inline(never)]
     pub fn first_missing_in(self, other: Self) -> Option<Need> {
-        Need::ALL.into_iter().find(|&need| self.has(need) && !other.has(need))
+        Need::ALL.iter().copied().find(|&need| self.has(need) && !other.has(need))
     }
 
     /// Whether surfaces have highlights.
@@ -222,6 +247,18 @@ impl Needs {
         self.has(Need::Reflection) || self.has(Need::Refraction)
     }
 
+    /// Whether surfaces may be more than matt.
+    #[must_use]
+    pub const fn lustres(self) -> bool {
+        self.highlights() || self.branches() || self.has(Need::TintedShadow)
+    }
+
+    /// Whether anything is between the corners of triangles.
+    #[must_use]
+    pub const fn weights(self) -> bool {
+        self.has(Need::SmoothNormals) || self.paint()
+    }
+
     /// Whether surfaces are painted.
     #[must_use]
     pub const fn paint(self) -> bool {
@@ -234,12 +271,24 @@ impl Needs {
     }
 }
 
+/// What gives way where flash and time compete. The picture is the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Prefer {
+    /// Flash: what is done often is in several copies, and what can be looked up is.
+    #[default]
+    Speed,
+    /// Time: everything is there once.
+    Size,
+}
+
 /// What is compiled in.
 pub trait Profile: Copy + Debug + Default + Send + Sync + 'static {
     /// The arithmetic.
     type Kernel: Kernel;
     /// Everything that a scene under this profile may need.
     const NEEDS: Needs;
+    /// What it is compiled for.
+    const PREFER: Prefer = Prefer::Speed;
 }
 
 /// Everything.

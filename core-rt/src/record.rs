@@ -83,6 +83,12 @@ impl Lustre {
     /// Highlights and mirror images go towards white at grazing angles, by Schlick's law.
     pub const METAL: u16 = 1 << 2;
 
+    /// Whether there are highlights.
+    #[must_use]
+    pub fn shines(&self) -> bool {
+        !self.specular_is_black()
+    }
+
     /// Whether there are no highlights.
     #[must_use]
     pub fn specular_is_black(&self) -> bool {

@@ -5,7 +5,7 @@
 
 use crate::bvh::{Intersect, Stack};
 use crate::colour::{Colour, Transfer};
-use crate::kernel::Kernel;
+use crate::kernel::{Kernel, NONE};
 use crate::profile::{Need, Profile};
 use crate::samples::Places;
 use crate::scene::Scene;
@@ -54,19 +54,17 @@ impl Tile {
 
     /// The tiles of a picture, row by row; those at the right and at the bottom are cut to fit. None where a size is 0.
     pub fn of(picture: [u16; 2], tile: [u16; 2]) -> impl Iterator<Item = Self> {
-        let starts = |end: u16, step: u16| {
-            let step = usize::from(step.max(1));
-            (0..end).step_by(step)
-        };
-        let cut = |start: u16, end: u16, step: u16| step.max(1).min(end - start);
-        let [width, height] = picture;
-        starts(height, tile[1]).flat_map(move |y| {
-            starts(width, tile[0]).map(move |x| Self {
-                x,
-                y,
-                width: cut(x, width, tile[0]),
-                height: cut(y, height, tile[1]),
-            })
+        // Two counters, and no `step_by`, which divides to know how often it will.
+        let ([width, height], [right, down]) = (picture, tile.map(|side| side.max(1)));
+        let (mut x, mut y) = (0, if width > 0 { 0 } else { height });
+        core::iter::from_fn(move || {
+            if y >= height {
+                return None;
+            }
+            let tile = Self { x, y, width: right.min(width - x), height: down.min(height - y) };
+            (x, y) =
+                if tile.width < right || width - x == right { (0, y.saturating_add(down)) } else { (x + right, y) };
+            Some(tile)
         })
     }
 }
@@ -168,13 +166,21 @@ pub fn render_tile<'w, P: Profile>(
     };
     let format = P::NEEDS.format().unwrap_or(scene.frame.format);
     let count = tile.pixels();
-    let capacity = workspace.hits.len().min(workspace.pixels.len() / format.bytes());
-    let (Some(hits), Some(pixels)) =
-        (workspace.hits.get_mut(..count), workspace.pixels.get_mut(..count * format.bytes()))
-    else {
+    let lengths = [workspace.hits.len(), workspace.pixels.len()];
+    let room = &mut *workspace.pixels;
+    let (Some(hits), true) = (workspace.hits.get_mut(..count), lengths[1] >= count * format.bytes()) else {
+        // Counted: a division would be a routine for this alone.
+        let fits = |&pixels: &usize| pixels * format.bytes() <= lengths[1];
+        let capacity = (1..=lengths[0]).take_while(fits).count();
         return Err(RenderError::Tile { capacity, needed: count });
     };
     let places = tile.places();
+    if !P::NEEDS.has(Need::Supersampling) {
+        // What pixels are written to is room for depths before.
+        let ray = |[x, y]: [u16; 2]| scene.primary(&scene.camera, x, y);
+        scene.bvh.closest_tile(scene.shared_origin(), ray, tile, hits, room, stack, stats);
+    }
+    let pixels = room.get_mut(..count * format.bytes()).unwrap_or_default();
     if P::NEEDS.has(Need::Supersampling) {
         // One sample goes the same way: it is in the middle, and the mean of itself.
         let samples = scene.frame.samples;
@@ -184,19 +190,21 @@ pub fn render_tile<'w, P: Profile>(
             .clone()
             .flat_map(|[x, y]| Places::of(samples).map(move |place| scene.primary(&scene.camera.through(place), x, y)));
         let (mut sum, mut taken) = (ColourOf::<P>::default(), 0);
-        let mut shown = pixels.chunks_exact_mut(format.bytes()).zip(places);
+        let (mut unwritten, mut shown) = (&mut *pixels, places);
         let mut left = count * usize::from(samples);
         while left > 0 {
             let room = hits.len().min(left);
             left -= room;
             let hits = hits.get_mut(..room).unwrap_or_default();
             let again = rays.clone();
-            scene.bvh.closest_tile(rays.by_ref().take(room), hits, stack, stats);
+            for (hit, ray) in hits.iter_mut().zip(rays.by_ref()) {
+                *hit = ray.as_ref().map_or(NONE, |ray| scene.bvh.closest(ray, stack, stats));
+            }
             for (&hit, ray) in hits.iter().zip(again) {
                 sum = sum.plus(seen(scene, ray.as_ref(), hit, stack, branches, stats).clamped());
                 taken += 1;
                 if taken == samples {
-                    if let Some((pixel, place)) = shown.next() {
+                    if let Some((pixel, place)) = unwritten.split_off_mut(..format.bytes()).zip(shown.next()) {
                         format.put(sum.mean(samples), transfer, place, pixel);
                     }
                     (sum, taken) = (ColourOf::<P>::default(), 0);
@@ -205,10 +213,13 @@ pub fn render_tile<'w, P: Profile>(
         }
     } else {
         let ray = |[x, y]: [u16; 2]| scene.primary(&scene.camera, x, y);
-        scene.bvh.closest_tile(places.clone().map(ray), hits, stack, stats);
-        for ((pixel, &hit), place) in pixels.chunks_exact_mut(format.bytes()).zip(&*hits).zip(places) {
+        // Taken off one by one: to know how many chunks there are takes a division.
+        let mut left = &mut *pixels;
+        for (&hit, place) in hits.iter().zip(places) {
             let seen = seen(scene, ray(place).as_ref(), hit, stack, branches, stats);
-            format.put(seen, transfer, place, pixel);
+            if let Some(pixel) = left.split_off_mut(..format.bytes()) {
+                format.put(seen, transfer, place, pixel);
+            }
         }
     }
     Ok(pixels)

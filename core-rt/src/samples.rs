@@ -48,7 +48,11 @@ impl Places {
     #[must_use]
     pub fn of(samples: u16) -> Self {
         let samples = u32::from(samples.clamp(1, MAX_SAMPLES));
-        let divided = |value: u32| [value / samples, value % samples];
+        // Never by 0, but that is for the compiler to see.
+        let divided = |value: u32| {
+            let quotient = value.checked_div(samples).unwrap_or_default();
+            [quotient, value - quotient * samples]
+        };
         Self {
             samples,
             row_bits: samples.next_power_of_two().trailing_zeros(),

@@ -109,7 +109,7 @@ impl<'a, P: Profile> Scene<'a, P> {
     /// Whatever is wrong with it; see [`BlobError`].
     pub fn new_checked(bytes: &'a [u8]) -> Result<Self, BlobError> {
         // Matched by reference here and below: neither a header nor a scene is small, and the stack would have them twice.
-        match &open(bytes, P::Kernel::ID) {
+        match &open(bytes, P::Kernel::ID, P::PREFER) {
             Ok((header, sections)) => Self::checked(header, sections),
             Err(error) => Err(*error),
         }
@@ -149,7 +149,7 @@ impl<'a, P: Profile> Scene<'a, P> {
     /// # Errors
     /// As [`Scene::new_checked`].
     pub fn header(bytes: &[u8]) -> Result<Header, BlobError> {
-        open(bytes, P::Kernel::ID).map(|(header, _)| header)
+        open(bytes, P::Kernel::ID, P::PREFER).map(|(header, _)| header)
     }
 }
 
@@ -157,7 +157,24 @@ impl<P: Profile> Scene<'_, P> {
     /// The rays that may wait while a pixel is drawn.
     #[must_use]
     pub fn branches(&self) -> usize {
-        if self.frame.needs.branches() { usize::from(self.frame.max_depth) + 1 } else { 0 }
+        if P::NEEDS.has(Need::Bounces) && self.frame.needs.has(Need::Bounces) {
+            usize::from(self.frame.max_depth) + 1
+        } else {
+            0
+        }
+    }
+
+    /// Whether surfaces are in each other's way of light.
+    #[inline(always)]
+    pub(crate) fn shadows(&self) -> bool {
+        P::NEEDS.has(Need::Shadows) && self.frame.needs.has(Need::Shadows)
+    }
+
+    /// The camera, where all its rays start at its eye.
+    #[inline]
+    #[must_use]
+    pub fn shared_origin(&self) -> Option<&Camera<<P::Kernel as Kernel>::Word>> {
+        (!P::NEEDS.has(Need::Orthographic) || !self.frame.needs.has(Need::Orthographic)).then_some(&self.camera)
     }
 
     /// The ray of a camera, the scene's or one that looks [through](Camera::through) other places, that goes through a pixel;
@@ -207,6 +224,7 @@ fn geometry<'a, P: Profile>(
         && (whole || shared) == (counts.triangles > 0)
         && shared == (counts.vertices > 0)
         // Only records have ids in them.
+        && apart != header.needs.has(Need::IdsInRecords)
         && (apart || (whole && counts.spheres == 0 && header.material_bits < Mesh::<P>::NO_IDS))
         && header.needs.has(Need::Spheres) == (counts.spheres > 0)
         && counts.smooth == if smooth { counts.triangles } else { 0 }
@@ -231,11 +249,18 @@ fn geometry<'a, P: Profile>(
         },
         // What the profile lacks the scene was found not to need, and then there are none.
         spheres: if P::NEEDS.has(Need::Spheres) { reader.records(counts.spheres)? } else { &[] },
-        ids: reader.integers(if apart { primitives } else { 0 }, header.needs.has(Need::WideIds))?,
+        ids: reader.integers(
+            if apart { primitives } else { 0 },
+            P::NEEDS.has(Need::WideIds) && header.needs.has(Need::WideIds),
+        )?,
     };
     let shading = Shading {
-        normal_indices: reader.integers(counts.smooth.checked_mul(3)?, header.needs.has(Need::WideNormals))?,
-        normals: reader.records(counts.normals)?,
+        normal_indices: if P::NEEDS.has(Need::SmoothNormals) {
+            reader.integers(counts.smooth.checked_mul(3)?, header.needs.has(Need::WideNormals))?
+        } else {
+            Integers::Narrow(&[])
+        },
+        normals: if P::NEEDS.has(Need::SmoothNormals) { reader.records(counts.normals)? } else { &[] },
         paint: Paint::read::<P>(&mut reader, header)?,
         materials: reader.records(counts.materials)?,
         lustres: reader.records(counts.lustres)?,

@@ -84,15 +84,19 @@ impl<'a> Reader<'a> {
     /// The next `count` records, and the padding behind them. `None` where the body is too short, the padding is not
     /// zero, or the memory is not aligned for the record.
     pub(crate) fn records<T: Record>(&mut self, count: u32) -> Option<&'a [T]> {
-        let size = (count as usize).checked_mul(size_of::<T>())?;
-        let padded = size.checked_next_multiple_of(ALIGN)?;
-        let section = self.bytes.get(..padded)?;
-        let (records, padding) = section.split_at_checked(size)?;
-        self.bytes = self.bytes.get(padded..)?;
-        if padding.iter().any(|&b| b != 0) {
-            return None;
-        }
-        <[T]>::ref_from_bytes(records).ok()
+        let records = self.section(count, size_of::<T>())?;
+        // The count is known: from the bytes it would take a division.
+        <[T]>::ref_from_bytes_with_elems(records, count as usize).ok()
+    }
+
+    /// The bytes of the next `count` records of a size. Apart, since it is the same for all types.
+    #[inline(never)]
+    fn section(&mut self, count: u32, size: usize) -> Option<&'a [u8]> {
+        let size = (count as usize).checked_mul(size)?;
+        let (records, rest) = self.bytes.split_at_checked(size)?;
+        let (padding, rest) = rest.split_at_checked(size.wrapping_neg() % ALIGN)?;
+        self.bytes = rest;
+        padding.iter().all(|&b| b == 0).then_some(records)
     }
 
     /// The next `count` integers.

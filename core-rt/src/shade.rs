@@ -38,8 +38,31 @@ pub(crate) struct Shaded<'a, P: Profile> {
     pub(crate) colour: ColourOf<P>,
 }
 
+/// The light alone that the surface sends which a ray hits, where no ray goes on from it; `None` for a miss.
+pub(crate) fn sent<P: Profile>(
+    scene: &Scene<'_, P>,
+    ray: &RayOf<P>,
+    hit: u32,
+    stack: &mut Stack<P::Kernel>,
+    stats: &mut impl Stats,
+) -> Option<ColourOf<P>> {
+    shaded(scene, ray, hit, stack, stats).map(|shaded| shaded.colour)
+}
+
 /// The surface that a ray hits, shaded; `None` for a miss.
 pub(crate) fn shade<'a, P: Profile>(
+    scene: &Scene<'a, P>,
+    ray: &RayOf<P>,
+    hit: u32,
+    stack: &mut Stack<P::Kernel>,
+    stats: &mut impl Stats,
+) -> Option<Shaded<'a, P>> {
+    shaded(scene, ray, hit, stack, stats)
+}
+
+/// See [`shade`]. A part of the caller, so that what that does not ask for is not made.
+#[inline(always)]
+fn shaded<'a, P: Profile>(
     scene: &Scene<'a, P>,
     ray: &RayOf<P>,
     hit: u32,
@@ -68,17 +91,31 @@ pub(crate) fn shade<'a, P: Profile>(
         if P::NEEDS.has(Need::Ambient) {
             diffuse = Colour::constant(&scene.frame.ambient);
         }
-        for (number, light) in (0..).zip(scene.shading.lights) {
-            let Some(arriving) = arriving(scene, &surface, smooth, light, hit, stack, stats) else { continue };
+        let mut add = |number, light| {
+            let Some((light, towards, cosine)) = arriving(scene, &surface, smooth, light, hit, stack, stats) else {
+                return;
+            };
             stats.light(number);
-            diffuse = diffuse.plus(Colour::lit(&arriving.light, arriving.cosine));
-            if let Some((lustre, along)) = shine {
-                let lobe = lobe::<P>(lustre, along, normal, arriving.towards);
-                shining = shining.plus(Colour::lit(&arriving.light, lobe));
+            diffuse = diffuse.plus(Colour::lit(&light, cosine));
+            if P::NEEDS.highlights()
+                && let Some((lustre, along)) = shine
+            {
+                let lobe = lobe::<P>(lustre, along, normal, towards);
+                shining = shining.plus(Colour::lit(&light, lobe));
             }
+        };
+        // One light takes no loop.
+        if P::NEEDS.has(Need::SeveralLights) {
+            for (number, light) in (0..).zip(scene.shading.lights) {
+                add(number, light);
+            }
+        } else if let Some(light) = scene.shading.lights.first() {
+            add(0, light);
         }
         colour = diffuse.reflected(&albedo);
-        if let Some((lustre, _)) = shine {
+        if P::NEEDS.highlights()
+            && let Some((lustre, _)) = shine
+        {
             let specular = towards_white(&lustre.specular, whiteness);
             colour = colour.plus(shining.reflected(&specular).doubled(lustre.gain.into()));
         }
@@ -128,7 +165,7 @@ fn smooth<P: Profile>(scene: &Scene<'_, P>, hit: u32, surface: &Surface<SpaceOf<
     }
     let mut lifted = surface.point;
     // A triangle with a normal far off its own is creased, and no part of a smooth surface.
-    if P::NEEDS.has(Need::Shadows) && normals.iter().all(|&normal| SpaceOf::<P>::near(normal, surface.normal)) {
+    if scene.shadows() && normals.iter().all(|&normal| SpaceOf::<P>::near(normal, surface.normal)) {
         let corners = vertices.map(SpaceOf::<P>::point);
         let (low, high) = (P::Kernel::MARGIN, (1 << P::Kernel::GRID_BITS) - 1 - P::Kernel::MARGIN);
         let range = [low, high].map(|c| SpaceOf::<P>::point([c; 3]));
@@ -141,11 +178,22 @@ impl<'a, P: Profile> Scene<'a, P> {
     /// The surface and the material of a hit; `None` for a miss.
     #[inline(always)]
     fn surface(&self, ray: &RayOf<P>, hit: u32) -> Option<(Surface<SpaceOf<P>>, &'a Material)> {
-        let material = self.material(hit)?;
-        let surface = match self.bvh.sphere(hit) {
-            Some(sphere) => P::Kernel::resolve_sphere(ray, sphere),
-            None => P::Kernel::resolve(ray, &self.bvh.triangles.get(hit)?),
+        // No hit is past the end of triangles; past that of spheres too, but then it takes a look at both.
+        if P::NEEDS.has(Need::Spheres) && hit == NONE {
+            return None;
+        }
+        let (number, mut surface) = match self.bvh.sphere(hit) {
+            Some(sphere) => (P::Kernel::sphere_material(sphere), P::Kernel::resolve_sphere(ray, sphere)),
+            None => {
+                let surface = self.bvh.triangles.of(hit, |triangle| P::Kernel::resolve(ray, triangle))?;
+                (self.bvh.triangles.material(hit)?, surface)
+            }
         };
+        let material = self.shading.materials.get(number as usize)?;
+        // What nothing reads need not be worked out.
+        if !P::NEEDS.weights() {
+            (surface.u, surface.v) = Default::default();
+        }
         Some((surface, material))
     }
 
@@ -165,7 +213,7 @@ impl<'a, P: Profile> Scene<'a, P> {
     /// What a material is more than matt.
     #[inline]
     pub(crate) fn lustre(&self, material: &Material) -> Option<&'a Lustre> {
-        if !P::NEEDS.highlights() && !P::NEEDS.branches() && !P::NEEDS.has(Need::TintedShadow) {
+        if !P::NEEDS.lustres() {
             return None;
         }
         self.shading.lustres.get(usize::from(material.lustre).wrapping_sub(1))

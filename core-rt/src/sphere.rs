@@ -29,8 +29,8 @@ impl Ball {
     #[must_use]
     pub fn contains(&self, point: Triple<i32>) -> bool {
         let square = |c: i32| i64::from(c) * i64::from(c);
-        let [x, y, z] = [0, 1, 2].map(|axis| square(point[axis].wrapping_sub(self.centre[axis])));
-        x + y + z < square(self.radius)
+        let away = |axis: usize| square(point[axis].wrapping_sub(self.centre[axis]));
+        away(0) + away(1) + away(2) < square(self.radius)
     }
 
     /// Whether a kernel can hold it: all of it is where vertices may be, and the radius is at least the kernel's least.

@@ -13,7 +13,7 @@ use crate::kernel::{Kernel, Surface};
 use crate::profile::{Need, Profile};
 use crate::record::Lustre;
 use crate::scene::Scene;
-use crate::shade::{ColourOf, RayOf, Shaded, SpaceOf, UnitOf, shade};
+use crate::shade::{ColourOf, RayOf, Shaded, SpaceOf, UnitOf, sent, shade};
 use crate::space::Space;
 use crate::stats::{RayKind, Stats};
 
@@ -41,21 +41,20 @@ pub(crate) fn radiance<P: Profile>(
     // That of no hit is none: it is past the end.
     stats.surface(|| scene.bvh.id(hit));
     if !P::NEEDS.branches() {
-        return match shade(scene, ray, hit, stack, stats) {
-            Some(shaded) => shaded.colour,
-            None => background(scene, ray),
-        };
+        return sent(scene, ray, hit, stack, stats).unwrap_or_else(|| background(scene, ray));
     }
     let mut total = ColourOf::<P>::default();
     let (mut ray, mut share, mut depth, mut hit) = (ray, WHITE, 0, hit);
     let mut taken;
-    branches.clear();
+    if P::NEEDS.has(Need::Bounces) {
+        branches.clear();
+    }
     loop {
         if let Some(shaded) = shade(scene, ray, hit, stack, stats) {
             total = total.plus(shaded.colour.reflected(&share));
             if let Some(lustre) = shaded.lustre {
                 for (next, share, kind) in go_on(scene, ray, hit, &shaded, lustre, &share).into_iter().flatten() {
-                    if depth < scene.frame.max_depth {
+                    if P::NEEDS.has(Need::Bounces) && depth < scene.frame.max_depth {
                         stats.ray(kind);
                         // There is room for one a level, and the one that is taken up again at once.
                         let _ = branches.push((next, share, depth + 1));
@@ -68,6 +67,9 @@ pub(crate) fn radiance<P: Profile>(
             total = total.plus(background(scene, ray).reflected(&share));
         }
         stats.next();
+        if !P::NEEDS.has(Need::Bounces) {
+            return total;
+        }
         let Some(next) = branches.pop() else { return total };
         (taken, share, depth) = next;
         ray = &taken;

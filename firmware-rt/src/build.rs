@@ -8,6 +8,7 @@ use core_rt::blob::{Header, PREFIX_SIZE, Prefix};
 use core_rt::exact::{Exact14, Exact20, Exact29};
 use core_rt::hanika::{HanikaC, HanikaCd, HanikaCons};
 use core_rt::kernel::Kernel;
+use core_rt::profile::{Need, Prefer};
 use float_rt::{Float32, Float64};
 use zerocopy::FromBytes;
 
@@ -19,7 +20,11 @@ pub const DEFAULT_BLOB: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/default.blo
 /// The variable that names the blob that firmware is built for.
 pub const BLOB_VARIABLE: &str = "INTRAY_BLOB";
 
-/// The variable that says what is drawn: nothing for the picture, `single` or `tile` for the nearest hits.
+/// The variable that gives a probe other needs than its blob's, in hexadecimal digits.
+pub const NEEDS_VARIABLE: &str = "INTRAY_NEEDS";
+
+/// The variable that says what is drawn: nothing for the picture, `single` or `tile` for the nearest hits,
+/// `by-hand` for the picture by a loop for the smallest profile alone.
 pub const HITS_VARIABLE: &str = "INTRAY_HITS";
 
 /// The variable that, set to 1, makes firmware count its work.
@@ -56,7 +61,7 @@ impl Traits {
     #[must_use]
     pub fn new(kernel: u16, header: &Header) -> Self {
         let depth = usize::from(header.depth).next_multiple_of(16).max(16);
-        let branches = match header.needs.branches() {
+        let branches = match header.needs.has(Need::Bounces) {
             true => (usize::from(header.max_depth) + 1).next_multiple_of(4),
             false => 0,
         };
@@ -77,6 +82,15 @@ impl Traits {
             (Float64::ID, "float_rt::Float64"),
         ];
         KERNELS.into_iter().find(|&(id, _)| id == self.kernel).map(|(_, path)| path)
+    }
+}
+
+/// What the compiler was told to prefer.
+#[must_use]
+pub fn prefer() -> Prefer {
+    match env::var("OPT_LEVEL").as_deref() {
+        Ok("s" | "z") => Prefer::Size,
+        _ => Prefer::Speed,
     }
 }
 
@@ -101,6 +115,7 @@ pub fn script(board: &Board, constant: &str) -> io::Result<()> {
     let draw = match env::var(HITS_VARIABLE).as_deref() {
         Ok("single") => "Draw::Hits(firmware_rt::hits::Way::Single)",
         Ok("tile") => "Draw::Hits(firmware_rt::hits::Way::Tile)",
+        Ok("by-hand") => "Draw::ByHand",
         _ => "Draw::Picture",
     };
     let watched = [COUNT_VARIABLE, MARKS_VARIABLE].map(|variable| env::var(variable).as_deref() == Ok("1"));
@@ -160,6 +175,7 @@ fn firmware(
     embedded: Option<(&Path, usize)>,
 ) -> String {
     let Traits { needs, depth, branches, .. } = traits;
+    let prefer = prefer();
     let blob = embedded.map_or_else(String::new, |(path, length)| {
         format!(
             "#[used]\n#[unsafe(link_section = \".blob\")]\nstatic BLOB: [u8; {length}] = *include_bytes!({:?});\n",
@@ -167,14 +183,15 @@ fn firmware(
         )
     });
     format!(
-        "use core_rt::profile::{{Needs, Profile}};\n\
+        "use core_rt::profile::{{Needs, Prefer, Profile}};\n\
          use firmware_rt::board::{{self, Board}};\n\
          use firmware_rt::run::{{Draw, Firmware, Storage}};\n\
          \n\
          #[derive(Clone, Copy, Debug, Default)]\n\
          struct This;\n\
          \n\
-         impl Profile for This {{\n    type Kernel = {kernel};\n    const NEEDS: Needs = Needs::from_bits({needs:#x});\n}}\n\
+         impl Profile for This {{\n    type Kernel = {kernel};\n    const NEEDS: Needs = Needs::from_bits({needs:#x});\n    \
+         const PREFER: Prefer = Prefer::{prefer:?};\n}}\n\
          \n\
          impl Firmware for This {{\n    type Profile = Self;\n    const BOARD: &'static Board = &board::{board};\n    \
          const DRAW: Draw = {draw};\n    const COUNT: bool = {count};\n    const MARKS: bool = {marks};\n}}\n\

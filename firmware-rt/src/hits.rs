@@ -21,19 +21,25 @@ pub enum Way {
     Tile,
 }
 
-/// Finds the nearest hits of a tile's camera rays, row by row. `hits` has one entry a pixel, and the stack is as deep as
-/// the scene's tree.
+/// Finds the nearest hits of a tile's camera rays, row by row. `hits` has one entry a pixel, the stack is as deep as the
+/// scene's tree, and a tile's rays walk together where there is [room](core_rt::tile::ROOM).
 pub fn find<P: Profile>(
     scene: &Scene<'_, P>,
     tile: Tile,
     way: Way,
     hits: &mut [u32],
+    room: &mut [u8],
     stack: &mut core_rt::bvh::Stack<P::Kernel>,
     stats: &mut impl Stats,
 ) {
     let ray = |[x, y]: [u16; 2]| scene.primary(&scene.camera, x, y);
     match way {
-        Way::Tile => scene.bvh.closest_tile(tile.places().map(ray), hits, stack, stats),
+        Way::Tile => {
+            for _ in 0..tile.pixels() {
+                stats.ray(RayKind::Primary);
+            }
+            scene.bvh.closest_tile(scene.shared_origin(), ray, tile, hits, room, stack, stats);
+        }
         Way::Single => {
             for (hit, place) in hits.iter_mut().zip(tile.places()) {
                 stats.ray(RayKind::Primary);

@@ -24,6 +24,8 @@ pub mod status;
 pub mod build;
 
 #[cfg(target_os = "none")]
+mod by_hand;
+#[cfg(target_os = "none")]
 pub mod end;
 #[cfg(target_os = "none")]
 mod marks;

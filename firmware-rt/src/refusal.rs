@@ -68,8 +68,11 @@ fn name(need: Need) -> defmt::Str {
         Need::Rgb565 => defmt::intern!("RGB565 output"),
         Need::Gray8 => defmt::intern!("gray output"),
         Need::Schlick => defmt::intern!("reflections after Schlick"),
+        Need::SeveralLights => defmt::intern!("several lights"),
+        Need::Bounces => defmt::intern!("rays that go on"),
         Need::WholeTriangles => defmt::intern!("triangles with records"),
         Need::SharedVertices => defmt::intern!("shared vertices"),
+        Need::IdsInRecords => defmt::intern!("ids in records"),
         Need::Ids => defmt::intern!("ids of their own"),
     }
 }

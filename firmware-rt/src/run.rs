@@ -17,7 +17,7 @@ use crate::marks::Marks;
 use crate::refusal::Refusal;
 use crate::status::Status;
 use crate::transport::{Error, Link, Wire};
-use crate::{stack, window};
+use crate::{by_hand, stack, window};
 
 /// Pixels a side of a tile.
 pub const TILE: u16 = 16;
@@ -29,7 +29,7 @@ pub const PIXELS: usize = TILE as usize * TILE as usize;
 #[must_use]
 pub const fn tile_bytes(needs: Needs, draw: Draw) -> usize {
     match draw {
-        Draw::Picture => PIXELS * needs.pixel_bytes(),
+        Draw::Picture | Draw::ByHand => PIXELS * needs.pixel_bytes(),
         Draw::Hits(_) => PIXELS * HITS_FORMAT.bytes(),
     }
 }
@@ -41,6 +41,8 @@ pub enum Draw {
     Picture,
     /// The nearest hits alone.
     Hits(Way),
+    /// The picture of the smallest profile, by a loop for it alone.
+    ByHand,
 }
 
 /// What a firmware was built for; `build` emits the one there is.
@@ -157,7 +159,7 @@ fn drawn<F: Firmware, S: Stats>(
 ) -> Result<(), Error> {
     let [width, height] = scene.frame.size;
     let format = match F::DRAW {
-        Draw::Picture => scene.frame.format,
+        Draw::Picture | Draw::ByHand => scene.frame.format,
         Draw::Hits(_) => HITS_FORMAT,
     };
     wire.send(Begin::KIND, &[Begin { width, height, format: format.number() }.as_bytes()])?;
@@ -199,9 +201,10 @@ fn draw<'w, F: Firmware>(
             // The storage has room for the scene and for every tile: there is no error left.
             bytes = render_tile(scene, tile, workspace, stats).map_or(0, <[u8]>::len);
         }
+        Draw::ByHand => bytes = by_hand::draw(scene, tile, workspace),
         Draw::Hits(way) => {
             let hits = workspace.hits.get_mut(..count).unwrap_or_default();
-            hits::find(scene, tile, way, hits, workspace.stack, stats);
+            hits::find(scene, tile, way, hits, workspace.pixels, workspace.stack, stats);
         }
     }
     window::intray_window_end();

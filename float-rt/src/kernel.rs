@@ -8,6 +8,7 @@ use core_rt::camera::Camera;
 use core_rt::kernel::{Bounds, Kernel, NONE, Surface, Vertices};
 use core_rt::num::{Triple, Word};
 use core_rt::sphere::Ball;
+use core_rt::tile::NoBeam;
 
 use crate::boxes;
 use crate::format::Format;
@@ -47,6 +48,7 @@ impl<F: Format> Kernel for Float<F> {
     type Path = Path<F>;
     type Distance = F;
     type Depth = F;
+    type Beam = NoBeam;
 
     fn settle(knobs: &Knobs, _triangles: impl Iterator<Item = Vertices>) -> Option<Arithmetic> {
         Arithmetic::fixed(knobs)

@@ -1,5 +1,6 @@
 //! Kernels by name: what the command line can ask of each, behind one interface.
 
+use std::collections::BTreeMap;
 use std::hint::black_box;
 use std::marker::PhantomData;
 use std::time::Instant;
@@ -13,6 +14,7 @@ use float_rt::{Float32, Float64};
 
 use crate::grid::{Grid, GridError};
 use crate::model::Model;
+use crate::needs::{self, Asked};
 use crate::prepare::{self, Options, PrepareError, Prepared};
 use crate::render::{self, Progress, Rendered};
 use crate::trace::{Measure, Trace, Tracer};
@@ -43,6 +45,11 @@ pub trait Engine: Sync + std::fmt::Debug {
     /// # Errors
     /// Where the blob is not one for this kernel.
     fn inspect(&self, blob: &[u8]) -> Result<(Header, Sizes), BlobError>;
+    /// What in a blob asks for each of its needs, and a triangle or a sphere of the file for each material.
+    ///
+    /// # Errors
+    /// Where the blob is not one for this kernel.
+    fn asked(&self, blob: &[u8]) -> Result<(Vec<Asked>, BTreeMap<u32, u32>), BlobError>;
     /// The picture of a blob.
     ///
     /// # Errors
@@ -130,6 +137,11 @@ impl<K: Measure + std::fmt::Debug> Engine for Of<K> {
             shading: (size_of_val(scene.shading.materials) + size_of_val(scene.shading.lights)) as u64,
         };
         Ok((Scene::<Full<K>>::header(blob)?, sizes))
+    }
+
+    fn asked(&self, blob: &[u8]) -> Result<(Vec<Asked>, BTreeMap<u32, u32>), BlobError> {
+        let scene = Scene::<Full<K>>::new_checked(blob)?;
+        Ok((needs::asked(&scene, &Scene::<Full<K>>::header(blob)?), needs::bearers(&scene)))
     }
 
     fn render(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<Rendered, BlobError> {

@@ -13,6 +13,7 @@ pub mod flash;
 pub mod grid;
 pub mod import;
 pub mod model;
+pub mod needs;
 pub mod picture;
 pub mod pixel_planes;
 pub mod pixels;

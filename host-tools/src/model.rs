@@ -301,6 +301,8 @@ pub struct RenderSettings {
     pub max_depth: u32,
     /// Light that reaches everything, linear RGB, not negative.
     pub ambient: DVec3,
+    /// Whether surfaces are in each other's way of light.
+    pub shadows: bool,
     /// How linear light becomes bytes.
     pub transfer: Transfer,
     /// How textures are looked up.
@@ -317,6 +319,7 @@ impl Default for RenderSettings {
             samples: 1,
             max_depth: 10,
             ambient: DVec3::ZERO,
+            shadows: true,
             transfer: Transfer::Srgb,
             filter: Filter::default(),
             format: Format::default(),

@@ -22,6 +22,7 @@ use shared::Shared;
 use core_rt::arithmetic::Knobs;
 use core_rt::bvh::Child;
 use core_rt::kernel::{Bounds, Kernel};
+use core_rt::profile::Prefer;
 use core_rt::record::Material;
 use core_rt::sphere::Ball;
 use thiserror::Error;
@@ -42,30 +43,19 @@ pub struct Options {
     pub grid_bits: Option<u32>,
     /// How texels are stored; `None` for the way that suits the output.
     pub texels: Option<Texels>,
-    /// How triangles are stored.
+    /// What a chip has less of: with [`Prefer::Speed`] triangles have a record each, with all that its test wants; with
+    /// [`Prefer::Size`] corners among shared vertices, of which records are made whenever they are tested. Pictures are the same.
     pub prefer: Prefer,
 }
 
-/// How triangles are stored, by what a chip has less of. Pictures are the same.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Prefer {
-    /// Time: a record each, with all that its test wants.
-    #[default]
-    Speed,
-    /// Flash: corners among shared vertices, of which records are made whenever they are tested.
-    Size,
-}
-
-impl Prefer {
-    /// The tree that suits the layout. Of `exact14` on bench-1k, bytes of nodes a triangle and instructions a ray on a
-    /// Cortex-M0 with records, by the cost of a triangle: 0.8: 8.8, 2,564; 1.0: 11.7, 2,454; 1.2: 14.0, 2,385; 2.0: 18.0, 2,334;
-    /// 3.0: 27.1, 2,360. Hosts do not feel it.
-    #[must_use]
-    pub fn tree(self) -> TreeOptions {
-        match self {
-            Self::Speed => TreeOptions::default(),
-            Self::Size => TreeOptions { triangle_cost: 1.0, ..TreeOptions::default() },
-        }
+/// The tree that suits what a chip has less of. Of `exact14` on bench-1k, bytes of nodes a triangle and instructions a ray on a
+/// Cortex-M0 with records, by the cost of a triangle: 0.8: 8.8, 2,564; 1.0: 11.7, 2,454; 1.2: 14.0, 2,385; 2.0: 18.0, 2,334;
+/// 3.0: 27.1, 2,360. Hosts do not feel it.
+#[must_use]
+pub fn tree_for(prefer: Prefer) -> TreeOptions {
+    match prefer {
+        Prefer::Speed => TreeOptions::default(),
+        Prefer::Size => TreeOptions { triangle_cost: 1.0, ..TreeOptions::default() },
     }
 }
 

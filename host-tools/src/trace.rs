@@ -79,7 +79,7 @@ impl<K: Measure> Trace for Tracer<'_, K> {
         let index = bvh.closest(&ray, &mut stack, &mut NoStats);
         let hit = match bvh.sphere(index) {
             Some(sphere) => K::measure_sphere(&ray, sphere)?,
-            None => K::measure(&ray, &bvh.triangles.get(index)?)?,
+            None => bvh.triangles.of(index, |triangle| K::measure(&ray, triangle))??,
         };
         // How often the direction goes into the kernel's, which is exactly 1 where they are the same.
         let share = hit.direction.dot(direction) / direction.length_squared();

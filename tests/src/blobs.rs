@@ -3,7 +3,7 @@
 use core_rt::blob::{Header, MAGIC, PREFIX_SIZE, Prefix, TRAILER_SIZE, VERSION, crc32};
 use core_rt::colour::{Albedo, Rgb888};
 use core_rt::kernel::{Kernel, Vertices};
-use core_rt::profile::{Full, Need};
+use core_rt::profile::{Full, Need, Prefer};
 use core_rt::record::{Checker, Light, Lustre, Material, Record};
 use core_rt::render::{Tile, Workspace, render_tile};
 use core_rt::scene::{MAX_BRANCHES, MAX_DEPTH, Scene};
@@ -12,7 +12,7 @@ use core_rt::stats::Counts;
 use core_rt::texture::{Texture, Uv};
 use host_tools::import::{Embedded, load_from};
 use host_tools::pixels::rgb888;
-use host_tools::prepare::{Blob, Options, Prefer, prepare};
+use host_tools::prepare::{Blob, Options, prepare};
 use host_tools::tree::TreeOptions;
 use zerocopy::{FromBytes, IntoBytes};
 
@@ -124,7 +124,7 @@ impl<K: Kernel> Draft<K> {
             self.triangle(&K::vertices(record), material).expect("a smaller number is held too")
         };
         self.triangles = self.triangles.iter().map(apart).collect();
-        self.header.needs = self.header.needs.with(Need::Ids, true);
+        self.header.needs = self.header.needs.without(Need::IdsInRecords).with(Need::Ids, true);
     }
 
     /// The blob of what is here, with the prefix and the checksum that it should have.

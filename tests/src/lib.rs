@@ -14,8 +14,10 @@ pub mod random;
 pub mod rays;
 pub mod scenes;
 pub mod shared;
+pub mod stack;
 pub mod symbols;
 pub mod ties;
+pub mod views;
 
 /// How much more the long run does: 10 with `INTRAY_LONG` set, else 1.
 #[must_use]

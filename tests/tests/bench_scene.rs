@@ -31,7 +31,7 @@ fn counts<K: Kernel>(model: &Model) -> (Counts, u64) {
     for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
         let Some(ray) = K::primary(scene.settings, &scene.camera, x, y) else { continue };
         let hit = scene.bvh.closest(&ray, &mut stack, &mut counts);
-        hits += u64::from(scene.bvh.triangles.get(hit).is_some());
+        hits += u64::from(scene.bvh.triangles.material(hit).is_some());
     }
     (counts, hits)
 }

@@ -182,7 +182,7 @@ fn hits_of(blob: &[u8]) -> Picture {
     let mut stack = heapless::Vec::<_, MAX_DEPTH>::new();
     let mut hits = vec![0; tile.pixels()];
     let mut picture = Picture::new(width.into(), height.into());
-    hits::find(&scene, tile, Way::Single, &mut hits, &mut stack, &mut Counts::default());
+    hits::find(&scene, tile, Way::Single, &mut hits, &mut [], &mut stack, &mut Counts::default());
     hits::paint(&scene, &hits, picture.pixels_mut().as_flattened_mut());
     picture
 }

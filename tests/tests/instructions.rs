@@ -32,8 +32,9 @@ const GROWTH: u64 = 100;
 const RENEWED: &str = "INTRAY_BLESS=1 cargo test -p tests --profile checked --test instructions";
 
 /// Scene, kernel, size, and the nearest hits alone.
-const SET: [(&str, &str, [u32; 2], Option<Way>); 5] = [
+const SET: [(&str, &str, [u32; 2], Option<Way>); 6] = [
     ("bench-1k", "exact14", [80, 64], Some(Way::Single)),
+    ("bench-1k", "exact14", [160, 128], Some(Way::Tile)),
     ("bench-1k", "exact29", [80, 64], Some(Way::Single)),
     ("bench-1k", "f32", [40, 32], Some(Way::Single)),
     ("built-in", "exact14", [32, 24], None),
@@ -78,7 +79,11 @@ fn counted(board: &'static Board, counter: &Counter) -> BTreeMap<String, u64> {
         let outcome = run.perform(&mut Vec::new()).expect("it goes well");
         let instructions = outcome.counts.expect("they were counted").instructions;
         let [width, height] = size;
-        let what = if hits.is_some() { ", hits" } else { "" };
+        let what = match hits {
+            None => "",
+            Some(Way::Single) => ", hits",
+            Some(Way::Tile) => ", hits of tiles",
+        };
         let name = format!("{scene} {width}x{height} by {kernel}{what}");
         println!("{} {name}: {instructions}, {} a pixel", board.name, instructions / u64::from(width * height));
         (name, instructions)

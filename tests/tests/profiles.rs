@@ -7,9 +7,9 @@ use core_rt::blob::BlobError;
 use core_rt::exact::Exact14;
 use core_rt::hanika::HanikaC;
 use core_rt::kernel::Kernel;
-use core_rt::profile::{Full, Needs, Profile};
+use core_rt::profile::{Full, Needs, Prefer, Profile};
 use core_rt::scene::Scene;
-use host_tools::prepare::{Options, Prefer, prepare};
+use host_tools::prepare::{Options, prepare};
 use host_tools::render::render;
 use host_tools::stress::cases;
 use tests::scenes;
@@ -42,7 +42,7 @@ macro_rules! needs {
         }
     };
 }
-needs!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 31 32);
+needs!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31 32 33 34);
 
 /// Under how many profiles each bit's absence was no hindrance, over all scenes.
 fn check<K: Kernel>() {

@@ -3,18 +3,21 @@
 //! The chips' are skipped, with a line that says so, where they cannot be emulated, or where the compiler is another than
 //! the one that the README names: instructions and sizes are the compiler's.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
+use core_rt::profile::{Need, Needs, Prefer};
 use core_rt::stats::Counts;
-use firmware_rt::board::{BOARDS, Board};
+use firmware_rt::board::{BOARDS, Board, HIFIVE1, MICROBIT};
 use host_tools::compare::compare;
 use host_tools::emulate::counter::Counter;
-use host_tools::emulate::firmware::Wanted;
+use host_tools::emulate::firmware::{self, Wanted};
 use host_tools::emulate::machine::Machine;
+use host_tools::emulate::probe::{DRAWING, EMPTY, Probe, SMALLEST, WHITTED, WHOLE, alone};
 use host_tools::emulate::{self, Run};
 use host_tools::engine::{self, ENGINES};
 use host_tools::import::{self, Embedded};
@@ -118,6 +121,55 @@ fn the_readme_shows_what_the_program_makes() {
 
     check_part("figures", &table, |stored, found| stored == found);
     check_picture("docs/demo.png", &shown.expect("there are kernels"));
+}
+
+/// A row of the table of needs: a size for each board.
+fn sizes_row(name: &str, size: &mut dyn FnMut(&'static Board) -> String) -> String {
+    format!("| {name} | {} |\n", SIZED.map(size).join(" | "))
+}
+
+/// The boards of the table of needs.
+const SIZED: [&Board; 2] = [&MICROBIT, &HIFIVE1];
+
+#[test]
+fn the_readme_says_what_needs_take() {
+    if let Some(error) = SIZED.into_iter().find_map(|board| firmware::check_board(board).err()) {
+        println!("skipped: {error}");
+        return;
+    }
+    let is_other = !generated(&readme(), "needs").expect("the README has the marks").contains(&compiler());
+    if is_other && !is_blessing() {
+        println!("skipped the sizes of needs: they are those of another compiler");
+        return;
+    }
+    // Most are asked for many times: the smallest with each need.
+    let mut known = BTreeMap::new();
+    let mut size = |board: &'static Board, program: &'static str, needs: Needs| -> i64 {
+        *known.entry((board.name, program, needs.bits())).or_insert_with(|| {
+            let probe = Probe { board, program, prefer: Prefer::Size, blob: None, needs: Some(needs) };
+            probe.provide().expect("it can be built").text_bytes.cast_signed()
+        })
+    };
+    let mut table = format!(
+        "By {}, `exact14`, for size (`firmware-small`).\n\n| bytes of code and constants | {} |\n| --- | --- | --- |\n",
+        compiler(),
+        SIZED.map(|board| board.name).join(" | "),
+    );
+    for (name, needs) in [("the smallest profile", SMALLEST), ("all that light may need", WHITTED)] {
+        for (program, checks) in [(DRAWING, ""), (WHOLE, ", with the blob's check")] {
+            let mut own = |board| {
+                (size(board, program, needs) - size(board, EMPTY, Needs::NONE.with(Need::Rgb888, true))).to_string()
+            };
+            table += &sizes_row(&format!("{name}{checks}"), &mut own);
+        }
+    }
+    for need in Need::ALL {
+        if let Some([without, with]) = alone(need) {
+            let mut added = |board| format!("{:+}", size(board, WHOLE, with) - size(board, WHOLE, without));
+            table += &sizes_row(&need.to_string(), &mut added);
+        }
+    }
+    check_part("needs", &table, |stored, found| stored == found);
 }
 
 /// The report of the gallery, as it is stored.

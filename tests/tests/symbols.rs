@@ -10,11 +10,13 @@ use std::process::{Command, Stdio};
 
 use core_rt::exact::Exact14;
 use core_rt::kernel::Kernel;
+use core_rt::profile::Prefer;
 use firmware_rt::board::{BOARDS, Board};
-use firmware_rt::build::{BLOB_VARIABLE, Traits};
+use firmware_rt::build::Traits;
 use host_tools::builtin;
 use host_tools::emulate::elf::Elf;
 use host_tools::emulate::firmware::{self, Wanted};
+use host_tools::emulate::probe::Probe;
 use host_tools::engine;
 use host_tools::import::{Embedded, load_from};
 use host_tools::prepare::Options;
@@ -42,22 +44,8 @@ fn built_in(kernel: &str) -> Vec<u8> {
 }
 
 /// A program of the package `probe`, for a blob or for the default one.
-fn probe(board: &Board, program: &str, blob: Option<&Path>) -> Elf {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
-    let target = std::path::absolute(target).unwrap();
-    let mut command = Command::new(env!("CARGO"));
-    command
-        .args(["build", "--quiet", "--profile", "firmware", "--package", "probe", "--bin", program])
-        .args(["--target", board.target])
-        .env("CARGO_TARGET_DIR", &target)
-        .current_dir(&root);
-    match blob {
-        Some(blob) => command.env(BLOB_VARIABLE, blob),
-        None => command.env_remove(BLOB_VARIABLE),
-    };
-    assert!(command.status().unwrap().success());
-    Elf::read(&target.join(board.target).join("firmware").join(program), board).unwrap()
+fn probe(board: &'static Board, program: &str, blob: Option<&Path>) -> Elf {
+    Probe { board, program, prefer: Prefer::Speed, blob, needs: None }.provide().unwrap()
 }
 
 fn categories(found: &Found) -> Vec<Category> {

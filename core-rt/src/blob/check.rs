@@ -7,10 +7,10 @@ use heapless::Vec;
 
 use super::{BlobError, Header};
 use crate::bvh::{Bvh, Child};
-use crate::colour::{Radiance, Transfer};
+use crate::colour::{Albedo, Radiance, Transfer};
 use crate::kernel::{Bounds, Kernel};
 use crate::profile::{Need, Needs, Profile};
-use crate::record::{Light, Lustre, Material, Reach};
+use crate::record::{Light, Lustre, Reach};
 use crate::scene::{MAX_DEPTH, Scene, Shading};
 use crate::space::{Space, is_unit_q30};
 
@@ -19,7 +19,7 @@ pub(crate) fn all<P: Profile>(header: &Header, scene: &Scene<'_, P>) -> Result<(
     tree(header, &scene.bvh)?;
     contents(header, &scene.bvh, &scene.shading)?;
     if P::NEEDS.paint() {
-        scene.shading.paint.check(header.counts.triangles)?;
+        scene.shading.paint.check::<P>(header.counts.triangles)?;
     }
     Ok(())
 }
@@ -34,7 +34,7 @@ fn contents<P: Profile>(header: &Header, bvh: &Bvh<'_, P>, shading: &Shading<'_,
     if P::NEEDS.has(Need::Spheres) {
         spheres(header, bvh, shading)?;
     }
-    materials_and_lights(header, shading)
+    materials_and_lights::<P>(header, shading)
 }
 
 /// Every triangle must be what the kernel makes of its vertices, and what it refers to must be there.
@@ -68,22 +68,48 @@ fn spheres<P: Profile>(header: &Header, bvh: &Bvh<'_, P>, shading: &Shading<'_, 
 }
 
 /// What shading reads must be in range, and declared.
-fn materials_and_lights<K: Kernel>(header: &Header, shading: &Shading<'_, K>) -> Result<(), BlobError> {
-    let radiances = shading.materials.iter().map(|m| &m.emission).chain(shading.lights.iter().map(|l| &l.radiance));
-    let in_range = radiances
-        .chain(&header.background)
-        .chain([&header.ambient])
-        .all(|radiance| Radiance::EXPONENTS.contains(&radiance.exponent));
-    let lights = shading.lights.iter().all(light_is_valid);
-    let lustres = shading.lustres.iter().all(lustre_is_valid)
-        && shading.materials.iter().all(|m: &Material| usize::from(m.lustre) <= shading.lustres.len());
-    let checkers = shading.checkers.iter().all(|checker| checker.reserved == 0)
-        && shading.materials.iter().all(|m: &Material| usize::from(m.checker) <= shading.checkers.len());
-    let normals = shading.normals.iter().all(K::Space::is_unit);
-    if !(in_range && lights && lustres && checkers && normals) {
+///
+/// What the profile lacks is not looked into further than to find that the scene needs it: it is refused for that then.
+fn materials_and_lights<P: Profile>(header: &Header, shading: &Shading<'_, P::Kernel>) -> Result<(), BlobError> {
+    let mut used = of_header(header);
+    let mut valid = header.background.iter().chain([&header.ambient]).all(is_in_range);
+    for material in shading.materials {
+        used = used.with(Need::Emission, !material.emission.is_black());
+        valid &= is_in_range(&material.emission)
+            && usize::from(material.lustre) <= shading.lustres.len()
+            && usize::from(material.checker) <= shading.checkers.len();
+    }
+    // Where rays may not go on, the background is seen instead of what they would see.
+    let goes_on = header.max_depth > 0 || header.background.iter().any(|colour| !colour.is_black());
+    for lustre in shading.lustres {
+        let tints = header.needs.has(Need::Shadows) && lustre.shadow != [0; 3];
+        let goes_on_in = |share: &Albedo| goes_on && *share != [0; 3];
+        used = used
+            .with(if lustre.flags & Lustre::PHONG == 0 { Need::BlinnPhong } else { Need::Phong }, lustre.shines())
+            .with(Need::Reflection, goes_on_in(&lustre.reflected))
+            .with(Need::Refraction, goes_on_in(&lustre.refracted))
+            .with(Need::Schlick, lustre.flags & (Lustre::FRESNEL | Lustre::METAL) != 0)
+            .with(Need::TintedShadow, tints);
+        valid &= !P::NEEDS.lustres() || lustre_is_valid(lustre);
+    }
+    for checker in shading.checkers {
+        used = used.with(Need::Checker, true);
+        valid &= checker.reserved == 0;
+    }
+    for light in shading.lights {
+        used = used
+            .with(if light.kind == Light::POINT { Need::PointLight } else { Need::DirectionalLight }, true)
+            .with(Need::Falloff, light.kind == Light::POINT && light.reach.mantissa != 0);
+        valid &= is_in_range(&light.radiance) && light_is_valid::<P>(light);
+    }
+    if P::NEEDS.has(Need::SmoothNormals) {
+        valid &= shading.normals.iter().all(<P::Kernel as Kernel>::Space::is_unit);
+    }
+    if !valid {
         return Err(BlobError::Shading);
     }
-    match used(header, shading).first_missing_in(header.needs) {
+    used = used.with(Need::Bounces, used.branches() && header.max_depth > 0);
+    match used.first_missing_in(header.needs) {
         Some(need) => Err(BlobError::Undeclared(need)),
         None => Ok(()),
     }
@@ -95,17 +121,20 @@ fn origins<P: Profile>(
     bvh: &Bvh<'_, P>,
     shading: &Shading<'_, P::Kernel>,
 ) -> Result<(), BlobError> {
-    let whole = match bvh.nodes {
-        [root, ..] => {
-            let [a, b] = P::Kernel::boxes(root);
-            a.union(&b)
-        }
+    let mut whole = Bounds::NOTHING;
+    match bvh.nodes {
+        [root, ..] => P::Kernel::boxes(root).iter().for_each(|held| whole = whole.union(held)),
         // The root is a leaf.
-        [] => bvh.bounds().reduce(|a, b| a.union(&b)).ok_or(BlobError::Sections)?,
-    };
+        [] => bvh.bounds().for_each(|held| whole = whole.union(&held)),
+    }
     let mut lights = shading.lights.iter().filter(|light| light.kind == Light::POINT).map(|light| light.place);
     let fits = lights.all(|origin| whole.spanned_from(origin, P::Kernel::SPAN)) && starts_within(&whole);
     if fits { Ok(()) } else { Err(BlobError::Origin) }
+}
+
+/// The exponent is one that shifts can do.
+fn is_in_range(radiance: &Radiance) -> bool {
+    Radiance::EXPONENTS.contains(&radiance.exponent)
 }
 
 /// What light is bent by must leave room in the products.
@@ -117,42 +146,25 @@ fn lustre_is_valid(lustre: &Lustre) -> bool {
 }
 
 /// A light must be of a known kind.
-fn light_is_valid(light: &Light) -> bool {
+fn light_is_valid<P: Profile>(light: &Light) -> bool {
     let Reach { mantissa, exponent } = light.reach;
-    if !(mantissa == 0 || mantissa >> 15 == 1) || !Reach::EXPONENTS.contains(&exponent) {
-        return false;
-    }
+    let fades = mantissa == 0 || mantissa >> 15 == 1 && Reach::EXPONENTS.contains(&exponent);
     match light.kind {
-        Light::POINT => true,
-        Light::DIRECTIONAL => is_unit_q30(light.place),
+        Light::POINT => fades,
+        Light::DIRECTIONAL => fades && (!P::NEEDS.has(Need::DirectionalLight) || is_unit_q30(light.place)),
         _ => false,
     }
 }
 
-/// What shading comes upon. A profile that was derived from the header must not be without it: the picture would
-/// depend on the profile.
-fn used<K: Kernel>(header: &Header, shading: &Shading<'_, K>) -> Needs {
-    let any_light = |kind| shading.lights.iter().any(|light| light.kind == kind);
-    // Where rays may not go on, the background is seen instead of what they would see.
-    let goes_on = header.max_depth > 0 || header.background.iter().any(|colour| !colour.is_black());
+/// What the header says that shading comes upon. A profile that was derived from it must not be without it: the picture
+/// would depend on the profile.
+fn of_header(header: &Header) -> Needs {
     Needs::NONE
-        .with(Need::PointLight, any_light(Light::POINT))
-        .with(Need::DirectionalLight, any_light(Light::DIRECTIONAL))
-        .with(Need::Shadows, !shading.lights.is_empty())
-        .with(Need::Emission, shading.materials.iter().any(|m| !m.emission.is_black()))
+        .with(Need::SeveralLights, header.counts.lights > 1)
         .with(Need::Ambient, !header.ambient.is_black())
-        .with(Need::Srgb, header.transfer == Transfer::Srgb)
-        .with(Need::Linear, header.transfer == Transfer::Linear)
+        .with(if header.transfer == Transfer::Srgb { Need::Srgb } else { Need::Linear }, true)
         .with(header.format.need(), true)
         .with(Need::Supersampling, header.samples > 1)
-        .with(Need::BlinnPhong, shading.lustres.iter().any(|l| !l.specular_is_black() && l.flags & Lustre::PHONG == 0))
-        .with(Need::Phong, shading.lustres.iter().any(|l| !l.specular_is_black() && l.flags & Lustre::PHONG != 0))
-        .with(Need::Reflection, goes_on && shading.lustres.iter().any(|l| l.reflected != [0; 3]))
-        .with(Need::Refraction, goes_on && shading.lustres.iter().any(|l| l.refracted != [0; 3]))
-        .with(Need::Schlick, shading.lustres.iter().any(|l| l.flags & (Lustre::FRESNEL | Lustre::METAL) != 0))
-        .with(Need::TintedShadow, !shading.lights.is_empty() && shading.lustres.iter().any(|l| l.shadow != [0; 3]))
-        .with(Need::Checker, !shading.checkers.is_empty())
-        .with(Need::Falloff, shading.lights.iter().any(|l| l.kind == Light::POINT && l.reach.mantissa != 0))
         .with(Need::Sky, header.background[0] != header.background[1])
 }
 

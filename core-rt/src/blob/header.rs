@@ -3,13 +3,13 @@
 use serde::{Deserialize, Serialize};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-use super::BlobError;
+use super::{BlobError, decode};
 use crate::arithmetic::Arithmetic;
 use crate::camera::{CameraHeader, Use};
 use crate::colour::{Radiance, Transfer};
 use crate::format::Format;
 use crate::paint::PaintCounts;
-use crate::profile::{Need, Needs};
+use crate::profile::{Need, Needs, Prefer};
 use crate::section::{ALIGN, Reader};
 
 /// How a blob begins. The first byte is no text; the line end shows a transfer that changed line ends.
@@ -162,16 +162,28 @@ impl Prefix {
     }
 }
 
+/// [`crc32`], without a table: that costs eight steps a byte, once a start.
+fn crc32_in_place(bytes: &[u8]) -> u32 {
+    const CRC: crc::Crc<u32, crc::NoTable> = crc::Crc::<u32, crc::NoTable>::new(&crc::CRC_32_ISO_HDLC);
+    CRC.checksum(bytes)
+}
+
 /// The header and the sections of a blob whose prefix and checksum are right.
 // Out of line: what decodes a header has it twice on the stack.
 #[inline(never)]
-pub(crate) fn open(bytes: &[u8], kernel: u16) -> Result<(Header, &[u8]), BlobError> {
+pub(crate) fn open(bytes: &[u8], kernel: u16, prefer: Prefer) -> Result<(Header, &[u8]), BlobError> {
     let prefix = Prefix::read(bytes)?;
     if prefix.kernel != kernel {
         return Err(BlobError::Kernel { found: prefix.kernel, expected: kernel });
     }
     let (summed, stated) = bytes.split_last_chunk::<4>().ok_or(BlobError::Header)?;
-    let (stated, computed) = (u32::from_le_bytes(*stated), crc32(summed));
+    let (stated, computed) = (
+        u32::from_le_bytes(*stated),
+        match prefer {
+            Prefer::Speed => crc32(summed),
+            Prefer::Size => crc32_in_place(summed),
+        },
+    );
     if stated != computed {
         return Err(BlobError::Checksum { stated, computed });
     }
@@ -184,8 +196,6 @@ pub(crate) fn open(bytes: &[u8], kernel: u16) -> Result<(Header, &[u8]), BlobErr
     }
     let mut reader = Reader { bytes: body.get(PREFIX_SIZE..).ok_or(BlobError::Header)? };
     let encoded = reader.records(prefix.header_size).ok_or(BlobError::Header)?;
-    match postcard::take_from_bytes::<Header>(encoded) {
-        Ok((header, [])) => Ok((header, reader.bytes)),
-        _ => Err(BlobError::Header),
-    }
+    let header = decode(encoded).ok_or(BlobError::Header)?;
+    Ok((header, reader.bytes))
 }

@@ -87,7 +87,8 @@ pub(super) fn unpack<W: Width>(node: &W::Node) -> [Bounds; 2] {
 }
 
 /// Where a ray enters a child, if it does before the limit.
-#[inline(always)]
+#[cfg_attr(not(prefer_size), inline(always))]
+#[cfg_attr(prefer_size, inline(never))]
 pub(super) fn enter<W: Width, const OCTANT: usize>(
     slopes: &W::Slopes,
     node: &W::Node,

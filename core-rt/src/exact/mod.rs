@@ -9,6 +9,7 @@
 //! Geometric Predicates" (1997).
 
 mod boxes;
+mod frustum;
 mod ray;
 mod resolve;
 mod slopes;
@@ -21,6 +22,7 @@ mod width29;
 
 pub(crate) use boxes::slab;
 pub use boxes::{BoxNode, BoxNode14, BoxNode29};
+pub use frustum::Frustum;
 pub use ray::Ray;
 pub(crate) use slopes::in_order;
 pub use slopes::{PerAxis, Slopes, Slopes14, Slopes29};
@@ -76,6 +78,7 @@ impl<W: Width> Kernel for Exact<W> {
     type Path = W::Slopes;
     type Distance = Distance<W>;
     type Depth = Depth<W>;
+    type Beam = Frustum<W>;
 
     fn settle(knobs: &Knobs, _triangles: impl Iterator<Item = Vertices>) -> Option<Arithmetic> {
         Arithmetic::fixed(knobs)
@@ -169,6 +172,11 @@ impl<W: Width> Kernel for Exact<W> {
     #[inline(always)]
     fn path(ray: &Ray<W>) -> W::Slopes {
         W::Slopes::new(ray.origin, ray.direction)
+    }
+
+    #[inline(always)]
+    fn path_of_any(ray: &Ray<W>) -> W::Slopes {
+        W::Slopes::of_any(ray.origin, ray.direction)
     }
 
     #[inline(always)]

@@ -41,7 +41,7 @@ impl<W: Width> Ray<W> {
         let [x, y, z] = direction.map(Word::magnitude);
         let largest = x.max(y).max(z);
         // Most camera rays fill the format as they are, and their bits need no counting.
-        if largest >> (W::DIRECTION_BITS - 1) == W::Word::ONE {
+        if cfg!(not(prefer_size)) && largest >> (W::DIRECTION_BITS - 1) == W::Word::ONE {
             return Some((Self { origin, direction, reach: None, skip }, 0));
         }
         let bits = largest.magnitude_bits();

@@ -1,7 +1,7 @@
 //! From (ray, id) to the hit point, the normal and the barycentrics: one function for every traversal.
 
 use super::ray::Ray;
-use super::triangle::{TriangleRecord, fraction, parts};
+use super::triangle::{TriangleRecord, parts};
 use super::width::Width;
 use crate::kernel::Surface;
 use crate::num::{Triple, cross, sub};
@@ -12,12 +12,14 @@ pub(super) fn resolve<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short
     let [v0, e1, e2] = parts::<W>(triangle);
     let s = sub(ray.origin, v0);
     let r = cross(s, ray.direction);
-    let (numerator, denominator) = fraction::<W>(ray, s, e1, e2);
-    let facing = W::dot(ray.direction, cross(e1, e2)) < W::Wide::default();
-    // U and V carry the sign of det.
+    let normal = cross(e1, e2);
+    let det = -W::dot(ray.direction, normal);
+    let facing = det > W::Wide::default();
+    // tn, U and V carry the sign of det.
     let positive = |value: W::Wide| if facing { value } else { -value };
+    let (numerator, denominator) = (positive(W::dot(s, normal)), positive(det));
     let (u, v) = (positive(W::dot(e2, r)), positive(-W::dot(e1, r)));
-    let normal: Triple<W::Word> = if facing { cross(e1, e2) } else { cross(e2, e1) };
+    let normal: Triple<W::Word> = if facing { normal } else { normal.map(|c| -c) };
     Surface {
         point: W::point(ray.origin, ray.direction, numerator, denominator),
         // A record's triangle has area, so its normal is not zero; the default is for a record that lies.

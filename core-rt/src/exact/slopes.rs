@@ -27,6 +27,11 @@ pub trait Slopes: Copy + Debug + Send + Sync {
 
     /// For a scaled direction.
     fn new(origin: Triple<Self::Word>, direction: Triple<Self::Word>) -> Self;
+    /// For a scaled direction, and boxes that are tested in the way that serves all octants.
+    #[inline(always)]
+    fn of_any(origin: Triple<Self::Word>, direction: Triple<Self::Word>) -> Self {
+        Self::new(origin, direction)
+    }
     /// The octant that boxes are tested by.
     fn octant(&self) -> usize;
     /// Where a ray of an octant crosses the near and the far one of two planes of an axis, the low one and the high one. A
@@ -115,16 +120,17 @@ const SCALE_MAX: u32 = 14;
 impl<const DIRECTION_BITS: u32, const UNIT_BITS: u32, const DELTA_BITS: u32>
     Scaled<DIRECTION_BITS, UNIT_BITS, DELTA_BITS>
 {
+    /// `of_any` says that no octant is wanted.
     /// For a direction, with its largest component in [2^(`DIRECTION_BITS` - 1), 2^`DIRECTION_BITS`), and the origin's
     /// coordinates that low planes and high ones are counted from.
     ///
     /// 2^(16 + log2 d) / d is not below [`reciprocal`]'s mantissa less 2, since that cuts d to 16 bits, and exceeds it by at
     /// most 6.
     #[inline(always)]
-    fn new(direction: Triple<i32>, low: Triple<i32>, high: Triple<i32>) -> Self {
+    fn new(direction: Triple<i32>, low: Triple<i32>, high: Triple<i32>, of_any: bool) -> Self {
         let magnitudes = direction.map(i32::unsigned_abs);
         let [x, y, z] = magnitudes;
-        let has_octant = x.min(y).min(z) >> (DIRECTION_BITS - SPREAD_BITS) != 0;
+        let has_octant = !of_any && x.min(y).min(z) >> (DIRECTION_BITS - SPREAD_BITS) != 0;
         let [x, y, z] = if has_octant { Self::same_unit(magnitudes) } else { magnitudes.map(Self::own_unit) };
         let slack = if has_octant { (1 << DELTA_BITS) + (8 << x.1) } else { 16 };
         let axis = |axis: usize, factor: u32| {
@@ -223,7 +229,12 @@ macro_rules! slopes {
 
             #[inline(always)]
             fn new(origin: Triple<$word>, direction: Triple<$word>) -> Self {
-                Self($new(origin, direction))
+                Self($new(origin, direction, false))
+            }
+
+            #[inline(always)]
+            fn of_any(origin: Triple<$word>, direction: Triple<$word>) -> Self {
+                Self($new(origin, direction, true))
             }
 
             #[inline(always)]
@@ -248,16 +259,18 @@ macro_rules! slopes {
         }
     };
 }
-slopes!(Slopes14, i32, |plane| plane, |depth| depth, |origin, direction| Scaled::new(direction, origin, origin));
+slopes!(Slopes14, i32, |plane| plane, |depth| depth, |origin, direction, of_any| Scaled::new(
+    direction, origin, origin, of_any
+));
 slopes!(
     Slopes29,
     i64,
     |plane: i64| (plane as u32 >> COARSE_BITS) as i32,
     |depth: i64| (depth as u32 >> 14) as i32, // from Q31 to Q17
-    |origin: Triple<i64>, direction: Triple<i64>| {
+    |origin: Triple<i64>, direction: Triple<i64>, of_any| {
         let up = origin.map(|c| -((-c as i32) >> COARSE_BITS));
         let down = origin.map(|c| (c as i32 >> COARSE_BITS) - 1);
-        Scaled::new(direction.map(|c| c as i32), up, down)
+        Scaled::new(direction.map(|c| c as i32), up, down, of_any)
     }
 );
 
@@ -275,7 +288,7 @@ mod tests {
     fn factors<const DIRECTION_BITS: u32, const UNIT_BITS: u32, const DELTA_BITS: u32>(delta_most: i128) -> [u32; 2] {
         let mut counts = [0; 2];
         for direction in directions(DIRECTION_BITS) {
-            let slopes = Scaled::<DIRECTION_BITS, UNIT_BITS, DELTA_BITS>::new(direction, [0; 3], [0; 3]);
+            let slopes = Scaled::<DIRECTION_BITS, UNIT_BITS, DELTA_BITS>::new(direction, [0; 3], [0; 3], false);
             let has_octant = slopes.octant() != ANY_OCTANT;
             counts[usize::from(has_octant)] += 1;
             for axis in [0, 1, 2] {

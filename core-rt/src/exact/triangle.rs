@@ -216,7 +216,7 @@ fn decided<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> bool 
 }
 
 /// t, for a line that meets the triangle.
-#[inline]
+#[cfg_attr(not(prefer_size), inline(always))]
 fn depth<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> Option<Depth<W>> {
     let [v0, e1, e2] = parts::<W>(triangle);
     let s = sub(ray.origin, v0);

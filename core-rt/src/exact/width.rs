@@ -7,7 +7,7 @@ use core::ops::{Add, Neg, Shr, Sub};
 use super::boxes::BoxNode;
 use super::slopes::Slopes;
 use crate::kernel::Surface;
-use crate::num::{Triple, Word};
+use crate::num::{BitLength, Triple, Word};
 use crate::record::Record;
 use crate::space::Space;
 
@@ -27,11 +27,19 @@ pub trait Wide:
 {
     /// `self - other` modulo the word, for a difference that is known to fit although its parts do not.
     fn wrapping_sub(self, other: Self) -> Self;
+    /// Of a positive value the 16 leading bits, and how many bits there are.
+    fn leading(self) -> (u32, u32);
 }
 
 macro_rules! wide {
     ($wide:ty) => {
         impl Wide for $wide {
+            #[inline(always)]
+            fn leading(self) -> (u32, u32) {
+                let bits = self.cast_unsigned().bit_length();
+                let leading = if bits > 16 { self >> (bits - 16) } else { self << (16 - bits) };
+                (leading as u32, bits)
+            }
             #[inline(always)]
             fn wrapping_sub(self, other: Self) -> Self {
                 self.wrapping_sub(other)

@@ -75,7 +75,8 @@ impl Width for Width14 {
 
     /// By 15-bit limbs of b, so that a Cortex-M0 needs `muls` alone. For |a| < 2^15 and |b| <= 2^30 a limb's product is at
     /// most 2^15 (2^15 - 1), and two of them fit; the third is added in 64 bits.
-    #[inline]
+    #[cfg_attr(not(prefer_size), inline)]
+    #[cfg_attr(prefer_size, inline(never))]
     fn dot(a: Triple<i32>, b: Triple<i32>) -> i64 {
         let sum =
             |limb: fn(i32) -> i32| i64::from(a[0] * limb(b[0]) + a[1] * limb(b[1])) + i64::from(a[2] * limb(b[2]));
@@ -101,12 +102,13 @@ impl Width for Width14 {
 
     #[inline]
     fn order(a: (i64, i64), b: (i64, i64)) -> Ordering {
-        (i128::from(a.0) * i128::from(b.1)).cmp(&(i128::from(b.0) * i128::from(a.1)))
+        product(a.0, b.1).cmp(&product(b.0, a.1))
     }
 
     /// With the denominator scaled to 16 bits, the numerator is below 2^19, and 2^16 after three more bits are dropped;
     /// t = numerator / denominator in Q13 = (numerator / 2^3) mantissa / 2^15.
-    #[inline]
+    #[cfg_attr(not(prefer_size), inline)]
+    #[cfg_attr(prefer_size, inline(never))]
     fn depth(numerator: i64, denominator: i64) -> i32 {
         let bits = bits_of(denominator);
         let r = reciprocal(scaled(denominator, bits, 16) as u32);
@@ -115,7 +117,8 @@ impl Width for Width14 {
 
     /// Within 4 units of 2^-14: the reciprocal is low by one in 2^14, the denominator's truncation makes it high by one in
     /// 2^15, the numerator's is less than two units of 2^-15, and the floor is one.
-    #[inline]
+    #[cfg_attr(not(prefer_size), inline)]
+    #[cfg_attr(prefer_size, inline(never))]
     fn fraction(numerator: i64, denominator: i64) -> <Grid14 as Space>::Fraction {
         let bits = bits_of(denominator);
         let r = reciprocal(scaled(denominator, bits, 16) as u32);
@@ -153,14 +156,14 @@ impl Width for Width14 {
         let r = reciprocal(scaled(denominator, bits, 16) as u32);
         // At most 65/64 * 2^14, times a mantissa below 2^16; mantissa / 2^29 is 1 / the 14-bit denominator.
         let rest_q26 = (scaled(remainder, bits, 14) as i32 * r.mantissa as i32) >> 19;
-        let offset = [0, 1, 2].map(|axis| {
+        let offset = |axis: usize| {
             let coarse = direction[axis] * t_q16; // at most SPAN grid units
             let fine = round_shift(direction[axis] * rest_q26, 26 - OFFSET_BITS); // 2^13 * 2^11
             (s[axis] << OFFSET_BITS).wrapping_add(coarse).wrapping_add(fine)
-        });
-        let point =
-            [0, 1, 2].map(|axis| (centre[axis] << POINT_BITS) + round_shift(offset[axis], OFFSET_BITS - POINT_BITS));
-        (point, offset)
+        };
+        let offset = [offset(0), offset(1), offset(2)];
+        let placed = |axis: usize| (centre[axis] << POINT_BITS) + round_shift(offset[axis], OFFSET_BITS - POINT_BITS);
+        ([placed(0), placed(1), placed(2)], offset)
     }
 
     #[inline]
@@ -194,10 +197,17 @@ impl Width for Width14 {
     }
 }
 
+#[cfg_attr(not(prefer_size), inline(always))]
+#[cfg_attr(prefer_size, inline(never))]
+fn product(a: i64, b: i64) -> i128 {
+    i128::from(a) * i128::from(b)
+}
+
 /// t to Q16 by one correction of the approximate depth: with t0 in Q16, the remainder (tn << 16) - t0 det is at most
 /// SLACK * 2^3 = 2^6 determinants, and its quotient by the 16-bit reciprocal is within 2^-7 of true before the floor. So t
 /// is low by less than 2^-16 (1 + 2^-7).
-#[inline(always)]
+#[cfg_attr(not(prefer_size), inline(always))]
+#[cfg_attr(prefer_size, inline(never))]
 fn quotient_q16(numerator: i64, denominator: i64) -> i32 {
     let t0_q16 = Width14::depth(numerator, denominator) << 3;
     // tn < 2^47, so tn << 16 fits, and t0 det is the same within 2^6 det < 2^51.
@@ -211,13 +221,15 @@ fn quotient_q16(numerator: i64, denominator: i64) -> i32 {
 }
 
 /// The number of bits of a positive value.
-#[inline]
+#[cfg_attr(not(prefer_size), inline)]
+#[cfg_attr(prefer_size, inline(never))]
 fn bits_of(value: i64) -> u32 {
     value.cast_unsigned().bit_length()
 }
 
 /// `value * 2^(to - from)`, rounded down: of a value with `from` bits, the leading `to`.
-#[inline]
+#[cfg_attr(not(prefer_size), inline)]
+#[cfg_attr(prefer_size, inline(never))]
 fn scaled(value: i64, from: u32, to: u32) -> i64 {
     if from > to { value >> (from - to) } else { value << (to - from) }
 }

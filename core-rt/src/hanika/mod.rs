@@ -44,6 +44,7 @@ use crate::kernel::{Bounds, Kernel, NONE, Surface, Vertices};
 use crate::num::Triple;
 use crate::space::{GridQ31, Space};
 use crate::sphere::{Ball, SphereRecord};
+use crate::tile::NoBeam;
 
 /// The report's kernel, in one of its variants.
 #[derive(Clone, Copy, Debug, Default)]
@@ -88,6 +89,7 @@ impl<V: Variant> Kernel for Hanika<V> {
     type Path = Ray<V::Slab>;
     type Distance = i32;
     type Depth = i32;
+    type Beam = NoBeam;
 
     fn settle(knobs: &Knobs, triangles: impl Iterator<Item = Vertices>) -> Option<Arithmetic> {
         settings::settle::<V>(knobs, triangles)

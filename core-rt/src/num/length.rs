@@ -1,7 +1,7 @@
 //! The number of bits of a value: by table where counting leading zeros is no instruction, and a routine of 25 or more.
 
-/// Whether the processor counts leading zeros.
-const HAS_INSTRUCTION: bool = cfg!(not(any(target_arch = "arm", target_arch = "riscv32")));
+/// Whether the processor counts leading zeros, or the routine is preferred as the smaller one.
+const HAS_INSTRUCTION: bool = cfg!(any(prefer_size, not(any(target_arch = "arm", target_arch = "riscv32"))));
 
 /// The number of bits of each byte.
 const LENGTHS: [u8; 256] = {
@@ -65,7 +65,7 @@ fn by_table(value: u32) -> u32 {
 /// The number of bits of a value below 2^8; others are cut.
 #[inline(always)]
 pub fn byte_length(byte: u32) -> u32 {
-    LENGTHS[byte as usize & 0xff].into()
+    if HAS_INSTRUCTION { u32::BITS - (byte & 0xff).leading_zeros() } else { LENGTHS[byte as usize & 0xff].into() }
 }
 
 #[cfg(test)]

@@ -50,6 +50,8 @@ pub trait Word:
     fn wrapping_sub(self, other: Self) -> Self;
     /// The number of bits that `|self|` takes: 0 for 0, n for 2^(n-1) <= |self| < 2^n.
     fn magnitude_bits(self) -> u32;
+    /// The least n for which all values are at least -2^n and below 2^n.
+    fn common_bits(values: impl IntoIterator<Item = Self>) -> u32;
     /// `|self|`; never called on the most negative word.
     fn magnitude(self) -> Self {
         if self < Self::ZERO { -self } else { self }
@@ -90,6 +92,12 @@ macro_rules! word {
             fn magnitude_bits(self) -> u32 {
                 self.unsigned_abs().bit_length()
             }
+            #[inline(always)]
+            fn common_bits(values: impl IntoIterator<Item = Self>) -> u32 {
+                // One length for all: the highest bit that differs from its value's sign.
+                let differing = values.into_iter().fold(0, |all, value| all | (value ^ (value >> (Self::BITS - 1))));
+                differing.cast_unsigned().bit_length()
+            }
         }
     };
 }
@@ -106,7 +114,8 @@ pub fn sub<T: Word>(a: Triple<T>, b: Triple<T>) -> Triple<T> {
 }
 
 /// `a x b`, for components that fit 32 bits. Each component is at most twice the product of the largest ones.
-#[inline(always)]
+#[cfg_attr(not(prefer_size), inline(always))]
+#[cfg_attr(prefer_size, inline(never))]
 pub fn cross<T: Word>(a: Triple<T>, b: Triple<T>) -> Triple<T> {
     let term = |i: usize, j: usize| a[i].product(b[j]) - a[j].product(b[i]);
     [term(1, 2), term(2, 0), term(0, 1)]

@@ -39,7 +39,8 @@ const TABLE: [u16; 1 << INDEX_BITS] = {
 /// r0 = table is within 2^-8 of 2^31 / x, so e = 2^31 - x r0 is below 2^23 in magnitude, and
 /// r1 = r0 (1 + e / 2^31) is low by (e / 2^31)^2 < 2^-16, and its rounding is half a unit either way: one unit is
 /// taken off so that the result is never high. The test goes through every d < 2^16.
-#[inline]
+#[cfg_attr(not(prefer_size), inline)]
+#[cfg_attr(prefer_size, inline(never))]
 pub fn reciprocal(d: u32) -> Reciprocal16 {
     let log2_d = (d | 1).bit_length() - 1;
     let x = if log2_d <= 15 { (d | (d == 0) as u32) << (15 - log2_d) } else { d >> (log2_d - 15) };

@@ -55,7 +55,8 @@ pub(crate) fn normalise(v: Triple<i32>) -> Option<Triple<I2F14>> {
     let half_shift = u32::from(square < 1 << 30); // the square is at least 2^28
     let y_q15 = (inverse_sqrt_u32(square << (2 * half_shift)) >> 1) as i32;
     // v / sqrt(square) = v y 2^half_shift / 2^30; to Q14.
-    Some(v.map(|c| I2F14::from_bits(round_shift(c * y_q15, 16 - half_shift) as i16)))
+    let unit = |c: i32| I2F14::from_bits(round_shift(c * y_q15, 16 - half_shift) as i16);
+    Some([unit(v[0]), unit(v[1]), unit(v[2])])
 }
 
 impl Space for Grid14 {
@@ -130,7 +131,8 @@ impl Space for Grid14 {
             }
         }
         // Not `clamp`, which would panic if the range had no inside.
-        [0, 1, 2].map(|axis| lifted[axis].max(low[axis]).min(high[axis]))
+        let within = |axis: usize| lifted[axis].max(low[axis]).min(high[axis]);
+        [within(0), within(1), within(2)]
     }
 
     #[inline]
@@ -141,7 +143,8 @@ impl Space for Grid14 {
     /// By the differences, which are below 2^30, rounded to 15 bits and shifted by at most 15: within half a unit and 2^-15 of
     /// the largest of them. Their products with weights of at most 2^14 are at most 2^29, and their sum 2^30. No hit's weights
     /// sum to more than 1 + 2^-11; what the shift to the left would lose of a larger sum is lost.
-    #[inline]
+    #[cfg_attr(not(prefer_size), inline)]
+    #[cfg_attr(prefer_size, inline(never))]
     fn blend([a, b, c]: Triple<i32>, u: I2F14, v: I2F14) -> i32 {
         let (p, q) = (b - a, c - a);
         let shift = bits([p, q, 0]).saturating_sub(15);
@@ -159,7 +162,8 @@ impl Space for Grid14 {
         dot_q28(a, b) >= 0
     }
 
-    #[inline]
+    #[cfg_attr(not(prefer_size), inline)]
+    #[cfg_attr(prefer_size, inline(never))]
     fn cosine(a: Self::Unit, b: Self::Unit) -> Option<U16F16> {
         let cosine_q28 = dot_q28(a, b);
         (cosine_q28 > 0).then(|| U16F16::from_bits((round_shift(cosine_q28, 12) as u32).min(1 << 16)))

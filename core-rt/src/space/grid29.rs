@@ -154,7 +154,8 @@ impl<F: Fraction> Space for Grid29With<F> {
             }
         }
         // Not `clamp`, which would panic if the range had no inside.
-        [0, 1, 2].map(|axis| lifted[axis].max(low[axis]).min(high[axis]))
+        let within = |axis: usize| lifted[axis].max(low[axis]).min(high[axis]);
+        [within(0), within(1), within(2)]
     }
 
     #[inline]

@@ -15,7 +15,6 @@ use crate::import::{GREATEST_DEPTH, MOST_SAMPLES};
 use crate::model::Format;
 use crate::picture::{SIZES, parse_size, size_is_allowed};
 use crate::planes;
-use crate::prepare;
 use crate::textures::Texels;
 
 /// In a kernel's place: the mesh is to say which.
@@ -180,7 +179,7 @@ pub(super) enum Prefer {
     Size,
 }
 
-impl From<Prefer> for prepare::Prefer {
+impl From<Prefer> for core_rt::profile::Prefer {
     fn from(prefer: Prefer) -> Self {
         match prefer {
             Prefer::Speed => Self::Speed,

@@ -5,6 +5,7 @@ use std::ffi::OsStr;
 use core_rt::blob::{BlobError, Prefix};
 use core_rt::exact::Exact14;
 use core_rt::kernel::Kernel;
+use core_rt::profile::Prefer;
 
 use super::failure::{Failure, note, warn};
 use super::input::{AUTO, SceneArguments};
@@ -18,7 +19,7 @@ use crate::import::{self, Imported};
 use crate::model::Model;
 use crate::picture::{SIZES, size_is_allowed};
 use crate::planes;
-use crate::prepare::{Blob, Degenerates, Options, Prefer, losses, unplaced};
+use crate::prepare::{Blob, Degenerates, Options, losses, tree_for, unplaced};
 use crate::textures;
 use crate::tree::TreeOptions;
 
@@ -41,6 +42,11 @@ impl SceneArguments {
         self.load_for(ENGINES[0])
     }
 
+    /// The same, and the model that it was made from, if it was.
+    pub(super) fn load_with_model(&self) -> Result<(Scene, Option<Model>), Failure> {
+        self.load_by(self.engine_or(ENGINES[0]))
+    }
+
     /// Reads the scene and prepares it for a chip: with another kernel than a host's unless one is asked for. Warnings go to
     /// stderr.
     ///
@@ -52,7 +58,7 @@ impl SceneArguments {
 
     /// The same, where the mesh is to say which kernel will do unless one is asked for.
     pub(super) fn load_for_mesh(&self) -> Result<Scene, Failure> {
-        self.load_by(self.engine())
+        self.load_by(self.engine()).map(|(scene, _)| scene)
     }
 
     /// The same, with the cheapest kernel and the coarsest grid that stay inside a budget.
@@ -86,25 +92,30 @@ impl SceneArguments {
 
     /// Reads the scene and prepares it, for `default` where neither it nor the user names a kernel.
     fn load_for(&self, default: &'static dyn Engine) -> Result<Scene, Failure> {
+        self.load_by(self.engine_or(default)).map(|(scene, _)| scene)
+    }
+
+    /// The kernel that the user names, or `default`; none where the scene is to say.
+    fn engine_or(&self, default: &'static dyn Engine) -> Option<&'static dyn Engine> {
         let is_auto = self.kernel.as_deref() == Some(AUTO);
-        self.load_by(self.engine().or((!is_auto).then_some(default)))
+        self.engine().or((!is_auto).then_some(default))
     }
 
     /// Reads the scene and prepares it, for the cheapest kernel that it stands on well where none is given.
-    fn load_by(&self, engine: Option<&'static dyn Engine>) -> Result<Scene, Failure> {
+    fn load_by(&self, engine: Option<&'static dyn Engine>) -> Result<(Scene, Option<Model>), Failure> {
         if self.is_planes() {
             return Err(Failure::input(
                 "planes12 makes pictures by `render`, and has no blob yet; choose another kernel",
             ));
         }
         if !self.is_model() {
-            return self.load_blob();
+            return Ok((self.load_blob()?, None));
         }
         let model = self.model()?;
         let choice = engine.is_none().then(|| auto(&model));
         let engine = choice.as_ref().map(|choice| choice.engine).or(engine).unwrap_or(ENGINES[0]);
         let scene = self.prepare(&model, engine, &self.options())?;
-        Ok(Scene { choice: choice.map(|choice| choice.to_string()), ..scene })
+        Ok((Scene { choice: choice.map(|choice| choice.to_string()), ..scene }, Some(model)))
     }
 
     /// Whether the kernel is the one that has no blobs.
@@ -251,7 +262,7 @@ impl SceneArguments {
 
     fn options(&self) -> Options {
         let prefer = Prefer::from(self.prefer.unwrap_or_default());
-        let tree = prefer.tree();
+        let tree = tree_for(prefer);
         Options {
             prefer,
             tree: self.leaf.map_or(tree, |leaf_max| TreeOptions { leaf_max, leaf_always: true, ..tree }),

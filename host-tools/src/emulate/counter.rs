@@ -7,7 +7,10 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use core_rt::profile::Needs;
+
 use super::EmulateError;
+use super::costs;
 use super::elf::Elf;
 use super::machine::{Machine, doubled};
 use super::parts::{Part, Range};
@@ -27,7 +30,15 @@ const NOWHERE: u64 = u64::MAX - 1;
 #[derive(Clone, Debug)]
 pub struct Counter {
     plugin: PathBuf,
-    by_part: bool,
+    by: By,
+}
+
+/// By what instructions are told apart.
+#[derive(Clone, Copy, Debug)]
+enum By {
+    Nothing,
+    Part,
+    Need(Needs),
 }
 
 /// What was counted.
@@ -80,7 +91,7 @@ impl Counter {
         let name = format!("{}qemu_plugin{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
         let path = repository.target().join("release").join(name);
         if path.is_file() {
-            Ok(Self { plugin: path, by_part: false })
+            Ok(Self { plugin: path, by: By::Nothing })
         } else {
             Err(format!("{}: not built", path.display()))
         }
@@ -89,7 +100,13 @@ impl Counter {
     /// The same, to count for a [breakdown](super::breakdown) of a firmware with marks of rays.
     #[must_use]
     pub fn by_part(&self) -> Self {
-        Self { by_part: true, ..self.clone() }
+        Self { by: By::Part, ..self.clone() }
+    }
+
+    /// The same, to count the instructions of the routines of each need.
+    #[must_use]
+    pub(super) fn by_need(&self, needs: Needs) -> Self {
+        Self { by: By::Need(needs), ..self.clone() }
     }
 
     /// What QEMU is to be told, for the counts of a firmware to be written to `out`.
@@ -98,14 +115,13 @@ impl Counter {
         let mut argument = doubled(&self.plugin);
         argument.push(format!(",begin={begin:#x},end={end:#x},out="));
         argument.push(doubled(out));
-        if self.by_part {
+        let list = match self.by {
+            By::Nothing => None,
+            By::Part => Some(by_part(elf)?),
+            By::Need(needs) => Some(costs::ranges(elf, needs, SHARED)?),
+        };
+        if let Some(list) = list {
             let parts = out.with_extension("parts");
-            let mut list = String::new();
-            for Range { start, size, part } in elf.parts()? {
-                // A string takes text.
-                let name = part.map_or(SHARED, Part::name);
-                let _ = writeln!(list, "{start:#x} {size:#x} {name}");
-            }
             files::write_atomically(&parts, list.as_bytes())?;
             argument.push(",symbols=");
             argument.push(doubled(&parts));
@@ -117,6 +133,17 @@ impl Counter {
         }
         Ok(argument)
     }
+}
+
+/// The ranges of an ELF's code by part, as the plugin reads them.
+fn by_part(elf: &Elf) -> Result<String, EmulateError> {
+    let mut list = String::new();
+    for Range { start, size, part } in elf.parts()? {
+        // A string takes text.
+        let name = part.map_or(SHARED, Part::name);
+        let _ = writeln!(list, "{start:#x} {size:#x} {name}");
+    }
+    Ok(list)
 }
 
 impl Counts {

@@ -9,6 +9,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+use core_rt::profile::Prefer;
 use firmware_rt::board::Board;
 use firmware_rt::build::{BLOB_VARIABLE, COUNT_VARIABLE, HITS_VARIABLE, MARKS_VARIABLE, Traits};
 use firmware_rt::hits::Way;
@@ -32,6 +33,14 @@ pub struct Wanted<'a> {
     pub count: bool,
 }
 
+/// Cargo's profile for what is preferred.
+pub(super) const fn cargo_profile(prefer: Prefer) -> &'static str {
+    match prefer {
+        Prefer::Speed => "firmware",
+        Prefer::Size => "firmware-small",
+    }
+}
+
 /// How firmware reaches the host.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Transport {
@@ -40,6 +49,15 @@ pub enum Transport {
     Semihosting,
     /// A probe reads its buffers.
     Rtt,
+}
+
+/// How firmware is built.
+#[derive(Clone, Copy, Debug, Default)]
+struct How {
+    transport: Transport,
+    marks: bool,
+    prefer: Prefer,
+    by_hand: bool,
 }
 
 /// Checks that firmware can be built here: that the sources and the compiler's library are there.
@@ -80,7 +98,7 @@ impl Wanted<'_> {
     /// # Errors
     /// Where it cannot be built.
     pub fn provide_marked(&self) -> Result<Elf, EmulateError> {
-        self.provide_as(Transport::Semihosting, true)
+        self.provide_as(How { marks: true, ..How::default() })
     }
 
     /// The firmware that reaches the host in some way, built if need be.
@@ -88,31 +106,47 @@ impl Wanted<'_> {
     /// # Errors
     /// Where it cannot be built.
     pub fn provide_over(&self, transport: Transport) -> Result<Elf, EmulateError> {
-        self.provide_as(transport, false)
+        self.provide_as(How { transport, ..How::default() })
     }
 
-    fn provide_as(&self, transport: Transport, marks: bool) -> Result<Elf, EmulateError> {
+    /// The firmware for QEMU that is compiled for speed or for size, built if need be.
+    ///
+    /// # Errors
+    /// Where it cannot be built.
+    pub fn provide_for(&self, prefer: Prefer) -> Result<Elf, EmulateError> {
+        self.provide_as(How { prefer, ..How::default() })
+    }
+
+    /// The firmware for QEMU that draws the picture of the smallest profile by a loop for it alone, built if need be.
+    ///
+    /// # Errors
+    /// Where it cannot be built.
+    pub fn provide_by_hand(&self) -> Result<Elf, EmulateError> {
+        self.provide_as(How { by_hand: true, ..How::default() })
+    }
+
+    fn provide_as(&self, how: How) -> Result<Elf, EmulateError> {
         let damaged = EmulateError::Damaged("the blob has no header");
         let traits = Traits::of(self.blob).ok_or(damaged)?;
         check(self.board, &traits)?;
         let repository = Repository::find()?;
         let folder = repository.target().join("firmware");
         fs::create_dir_all(&folder).map_err(EmulateError::folder)?;
-        let path = folder.join(format!("{}.elf", self.name(&traits, transport, marks)));
+        let path = folder.join(format!("{}.elf", self.name(&traits, how)));
         let origin_path = path.with_extension("origin");
         // One at a time: cargo has one place for all profiles of a package.
         let lock = File::create(folder.join("lock")).and_then(|file| file.lock().map(|()| file));
         let _lock = lock.map_err(EmulateError::folder)?;
         let origin = origin(repository.root(), self.board.package).map_err(EmulateError::folder)?;
         if !path.is_file() || !fs::read_to_string(&origin_path).is_ok_and(|made_from| made_from == origin) {
-            self.build(&repository, &path, transport, marks)?;
+            self.build(&repository, &path, how)?;
             files::write_atomically(&origin_path, origin.as_bytes())?;
         }
         Elf::read(&path, self.board)
     }
 
     /// Board, kernel, profile and transport.
-    fn name(&self, traits: &Traits, transport: Transport, marks: bool) -> String {
+    fn name(&self, traits: &Traits, how: How) -> String {
         let kernel = engine::by_id(traits.kernel).map_or("unknown", |engine| engine.name());
         let hits = match self.hits {
             None => "",
@@ -120,27 +154,27 @@ impl Wanted<'_> {
             Some(Way::Tile) => "-tile",
         };
         let count = if self.count { "-count" } else { "" };
-        let marks = if marks { "-marks" } else { "" };
-        let transport = match transport {
+        let marks = if how.marks { "-marks" } else { "" };
+        let transport = match how.transport {
             Transport::Semihosting => "",
             Transport::Rtt => "-rtt",
         };
+        let small = if how.prefer == Prefer::Size { "-small" } else { "" };
+        let by_hand = if how.by_hand { "-by-hand" } else { "" };
         let Traits { needs, depth, branches, .. } = traits;
-        format!("{}-{kernel}-{needs:x}-{depth}-{branches}{hits}{count}{marks}{transport}", self.board.name)
+        let board = self.board.name;
+        format!("{board}-{kernel}-{needs:x}-{depth}-{branches}{hits}{count}{marks}{transport}{small}{by_hand}")
     }
 
-    fn build(
-        &self,
-        repository: &Repository,
-        path: &Path,
-        transport: Transport,
-        marks: bool,
-    ) -> Result<(), EmulateError> {
+    fn build(&self, repository: &Repository, path: &Path, how: How) -> Result<(), EmulateError> {
+        let How { transport, marks, prefer, by_hand } = how;
+        let profile = cargo_profile(prefer);
         let Board { target, package, feature, .. } = *self.board;
         // A name that stays the same from build to build, so that cargo knows what it has.
         let blob = path.with_extension("blob");
         files::write_atomically(&blob, self.blob)?;
         let hits = match self.hits {
+            None if by_hand => "by-hand",
             None => "",
             Some(Way::Single) => "single",
             Some(Way::Tile) => "tile",
@@ -153,13 +187,13 @@ impl Wanted<'_> {
             (MARKS_VARIABLE, set(marks).into()),
         ];
         let mut arguments =
-            vec!["build", "--package", package, "--bin", package, "--target", target, "--profile", "firmware"];
+            vec!["build", "--package", package, "--bin", package, "--target", target, "--profile", profile];
         let rtt = (transport == Transport::Rtt).then_some("rtt");
         arguments.extend(feature.into_iter().chain(rtt).flat_map(|feature| ["--features", feature]));
         repository
             .cargo(&arguments, &variables)
             .map_err(|output| EmulateError::Build { package: package.into(), output })?;
-        let built = repository.target().join(target).join("firmware").join(package);
+        let built = repository.target().join(target).join(profile).join(package);
         files::write_atomically(path, &files::read(&built)?)?;
         // Only the build needed it.
         fs::remove_file(blob).map_err(EmulateError::folder)

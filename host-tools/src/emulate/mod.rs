@@ -4,6 +4,7 @@
 //! the number of instructions from a [plugin](counter) that watches from outside.
 
 pub mod breakdown;
+pub mod costs;
 pub mod counter;
 pub mod elf;
 mod error;
@@ -12,8 +13,10 @@ pub mod frames;
 pub mod log;
 pub mod machine;
 pub mod parts;
+pub mod probe;
 pub mod process;
 mod repository;
+pub mod routines;
 
 pub use error::EmulateError;
 

@@ -156,6 +156,7 @@ pub(super) struct RenderToml {
     pub samples: Option<Spanned<Number>>,
     pub max_depth: Option<Spanned<Number>>,
     pub ambient: Option<Spanned<Vector>>,
+    pub shadows: Option<bool>,
     #[serde(default)]
     pub filter: FilterToml,
     #[serde(default)]

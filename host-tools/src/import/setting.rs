@@ -113,6 +113,7 @@ impl Document {
             TransferToml::Linear => Transfer::Linear,
         };
         let ambient = self.colour("ambient", LARGEST, render.ambient.as_ref(), DVec3::ZERO)?;
+        let shadows = render.shadows.unwrap_or(default.shadows);
         let filter = match render.filter {
             FilterToml::Bilinear => Filter::Bilinear,
             FilterToml::Nearest => Filter::Nearest,
@@ -122,7 +123,7 @@ impl Document {
             FormatToml::Rgb565 => Format::Rgb565,
             FormatToml::Gray8 => Format::Gray8,
         };
-        Ok(RenderSettings { size, samples, max_depth, ambient, transfer, filter, format })
+        Ok(RenderSettings { size, samples, max_depth, ambient, shadows, transfer, filter, format })
     }
 
     fn size(&self, size: &Spanned<Vec<Number>>) -> Result<[u32; 2], ImportError> {

@@ -96,6 +96,8 @@ pub(super) fn needs(model: &Model, materials: &[Material], lustres: &[Lustre]) -
     // Where rays may not go on, the background is seen instead of what they would see.
     let is_seen = max_depth(model) > 0 || !bottom.is_black() || !top.is_black();
     let goes_on = |colour: fn(&Lustre) -> Albedo| is_seen && lustres.iter().any(|l| colour(l) != [0; 3]);
+    let (reflects, refracts) = (goes_on(|l| l.reflected), goes_on(|l| l.refracted));
+    let shadows = model.render.shadows && !model.lights.is_empty();
     let fades = |light: &model::Light| {
         matches!((light.kind, light.falloff), (LightKind::Point(_), Falloff::InverseSquare { .. }))
     };
@@ -103,7 +105,8 @@ pub(super) fn needs(model: &Model, materials: &[Material], lustres: &[Lustre]) -
     Needs::NONE
         .with(Need::PointLight, any_light(|kind| matches!(kind, LightKind::Point(_))))
         .with(Need::DirectionalLight, any_light(|kind| matches!(kind, LightKind::Directional(_))))
-        .with(Need::Shadows, !model.lights.is_empty())
+        .with(Need::Shadows, shadows)
+        .with(Need::SeveralLights, model.lights.len() > 1)
         .with(Need::Emission, materials.iter().any(|m| !m.emission.is_black()))
         .with(Need::Ambient, !radiance(model.render.ambient).is_black())
         .with(Need::Srgb, model.render.transfer == model::Transfer::Srgb)
@@ -113,10 +116,11 @@ pub(super) fn needs(model: &Model, materials: &[Material], lustres: &[Lustre]) -
         .with(Need::Orthographic, matches!(model.camera.projection, Projection::Orthographic { .. }))
         .with(Need::BlinnPhong, shines(false))
         .with(Need::Phong, shines(true))
-        .with(Need::Reflection, goes_on(|l| l.reflected))
-        .with(Need::Refraction, goes_on(|l| l.refracted))
+        .with(Need::Reflection, reflects)
+        .with(Need::Refraction, refracts)
+        .with(Need::Bounces, (reflects || refracts) && max_depth(model) > 0)
         .with(Need::Schlick, lustres.iter().any(|l| l.flags & (Lustre::FRESNEL | Lustre::METAL) != 0))
-        .with(Need::TintedShadow, !model.lights.is_empty() && lustres.iter().any(|l| l.shadow != [0; 3]))
+        .with(Need::TintedShadow, shadows && lustres.iter().any(|l| l.shadow != [0; 3]))
         .with(Need::Checker, materials.iter().any(|m| m.checker != 0))
         .with(Need::Falloff, model.lights.iter().any(fades))
         .with(Need::Sky, bottom != top)

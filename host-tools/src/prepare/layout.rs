@@ -124,6 +124,7 @@ pub(super) fn write<K: Kernel>(
         .with(Need::SmoothNormals, !corners.is_empty())
         .with(Need::Spheres, !parts.sphere_ids.is_empty())
         .with(Need::Ids, parts.material_bits.is_none())
+        .with(Need::IdsInRecords, parts.material_bits.is_some())
         .with(Need::WideIds, wide_ids && parts.material_bits.is_none())
         .with(Need::WideNormals, wide_normals);
     let needs = parts.paint.needs(needs, model.render.filter);

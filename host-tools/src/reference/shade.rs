@@ -93,15 +93,15 @@ impl Reference<'_> {
             // Not a number if the light is at the point, which then counts as unlit.
             let l = Ray::new(surface.point, towards).step.normalize();
             let cosine = surface.normal.dot(l);
+            let lifted = surface.lifted.filter(|_| self.model.render.shadows);
             if !(cosine > 0.0
-                && (surface.lifted.is_some_and(|lifted| lifted != surface.point)
-                    || surface.geometric_normal.dot(l) > 0.0))
+                && (lifted.is_some_and(|lifted| lifted != surface.point) || surface.geometric_normal.dot(l) > 0.0))
             {
                 continue;
             }
-            let from = surface.lifted.unwrap_or(surface.point);
+            let from = lifted.unwrap_or(surface.point);
             let ray = Ray::new(from, end.map_or(towards, |end| end - from));
-            let passed = self.passed(&ray, surface.prim, end);
+            let passed = if self.model.render.shadows { self.passed(&ray, surface.prim, end) } else { DVec3::ONE };
             if passed == DVec3::ZERO {
                 continue;
             }

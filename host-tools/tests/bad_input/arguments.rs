@@ -56,7 +56,7 @@ fn numbers_out_of_range() {
 #[test]
 fn kernels_that_do_not_exist() {
     // Such as: exact29, exact14.
-    let known = format!("{}, auto", ENGINES.map(|engine| engine.name()).join(", "));
+    let known = format!("{}, planes12, auto", ENGINES.map(|engine| engine.name()).join(", "));
     refused(
         "render scene.obj --kernel sixteen -o out.png",
         &format!("invalid value 'sixteen' for '--kernel <KERNEL>'\n  [possible values: {known}]"),
@@ -68,6 +68,20 @@ fn kernels_that_do_not_exist() {
              tip: a similar value exists: 'exact14'"
         ),
     );
+}
+
+#[test]
+fn boards_that_are_unknown() {
+    refused(
+        "inspect scene.obj --board microbyt",
+        "invalid value 'microbyt' for '--board <BOARD>'\n  [possible values: microbit, hifive1, pico]\n\n  \
+         tip: a similar value exists: 'microbit'",
+    );
+    // Nothing counts what QEMU cannot run.
+    let output = Folder::with_triangle().run("inspect scene.obj --kernel exact14 --board pico");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(output.stdout.is_empty());
+    assert!(String::from_utf8_lossy(&output.stderr).contains("QEMU has no such machine"));
 }
 
 #[test]

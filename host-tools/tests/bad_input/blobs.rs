@@ -129,6 +129,7 @@ fn for_something_else_than_was_asked() {
         "--depth 3",
         "--format gray8",
         "--leaf 2",
+        "--prefer size",
         "--grid-bits 10",
         "--triangles 1",
         "--edge-shift 10",
@@ -139,7 +140,7 @@ fn for_something_else_than_was_asked() {
         folder.refuses(
             &format!("render scene.blob {option} -o out.png"),
             "error: scene.blob: the blob is for 6x4 pixels, and its tree is built; --size, --samples, --depth, --format, \
-             --leaf, --grid-bits, --triangles, --texture-size, --texels and the knobs of its arithmetic need the scene that \
+             --leaf, --prefer, --grid-bits, --triangles, --texture-size, --texels and the knobs of its arithmetic need the scene that \
              it was made from\n",
         );
     }

@@ -60,10 +60,38 @@ fn inspect() {
     }
     assert_eq!(of_scene["blob_bytes"], folder.read("scene.blob").len());
     assert_eq!((&of_scene["triangles"], &of_scene["grid_bits"]), (&1.into(), &29.into()));
-    assert_eq!(of_scene["needs"], serde_json::json!(["point lights", "shadows", "sRGB output", "RGB888 output"]));
+    let needs = ["point lights", "shadows", "sRGB output", "RGB888 output", "triangles with records", "ids in records"];
+    assert_eq!(of_scene["needs"], serde_json::json!(needs));
+    // Why it needs them, without a look at a board.
+    let lights = &of_scene["needs_explained"][0];
+    let (need, count, what, data) = (&lights["need"], &lights["count"], &lights["what"], &lights["data_bytes"]);
+    assert_eq!((need, count, what, data), (&"point lights".into(), &1.into(), &"light".into(), &28.into()));
+    assert_eq!((&lights["code_bytes"], &of_scene["costs"]), (&Value::Null, &Value::Null));
     // A blob does not tell why triangles were left out.
     assert_eq!(of_blob.insert("degenerates".into(), of_scene["degenerates"].clone()), Some(Value::Null));
     assert_eq!(of_blob, of_scene);
+}
+
+#[test]
+fn inspect_names_the_materials_that_ask() {
+    let folder = folder();
+    folder.write(
+        "glass.toml",
+        b"model = 'scene.obj'\n[render]\nsize = [24, 18]\n[material.default]\nkind = 'dielectric'\nior = 1.5\n\
+          [[sphere]]\ncentre = [0, 0, 0]\nradius = 0.5\nmaterial = 'ball'\n[material.ball]\nkind = 'mirror'\n",
+    );
+    folder.succeeds("prep glass.toml --kernel exact29 -o glass.blob", "");
+    for (scene, names) in [("glass.toml", ["ball", "default"]), ("glass.blob", ["material 0", "material 1"])] {
+        let found = object(&folder, &format!("inspect {scene} --json"));
+        let explained = found["needs_explained"].as_array().expect("a list");
+        let of =
+            |need: &str| explained.iter().find(|explained| explained["need"] == need).expect("a need of the scene");
+        let mut reflecting: Vec<&str> =
+            of("reflection")["materials"].as_array().expect("names").iter().filter_map(Value::as_str).collect();
+        reflecting.sort_unstable();
+        assert_eq!(reflecting, names);
+        assert_eq!((&of("refraction")["count"], &of("spheres")["count"]), (&1.into(), &1.into()));
+    }
 }
 
 #[test]

@@ -97,7 +97,7 @@ fn files_that_are_not_there() {
     for option in ["--leaf 2", "--epsilon 2"] {
         refuses(
             &format!("scene.obj --rays rays.csv -o hits.csv --kernel reference {option}"),
-            "--leaf, --grid-bits and the knobs of arithmetic are the kernels'; the reference has none",
+            "--leaf, --prefer, --grid-bits and the knobs of arithmetic are the kernels'; the reference has none",
         );
     }
     refuses("scene.obj --rays rays.csv -o folder", "folder: this is a folder; give the name of a file");
@@ -111,7 +111,7 @@ fn files_that_are_not_there() {
     );
     refuses(
         "scene.obj --rays rays.csv -o hits.csv --kernel reference --leaf 1",
-        "--leaf, --grid-bits and the knobs of arithmetic are the kernels'; the reference has none",
+        "--leaf, --prefer, --grid-bits and the knobs of arithmetic are the kernels'; the reference has none",
     );
 }
 

@@ -65,13 +65,13 @@ fn header(blob: &Blob, model: &Model) -> Checked {
     let needs = [
         any_kind(true),
         any_kind(false),
-        !model.lights.is_empty(),
+        !model.lights.is_empty() && model.render.shadows,
         smooth,
         used.clone().any(|m| model.materials[m as usize].emission != DVec3::ZERO),
         model.render.ambient != DVec3::ZERO,
         !linear,
         linear,
-        header.needs >> 32 & 1 == 1 && model.triangles.len() + model.spheres.len() > 65_536,
+        header.needs >> 33 & 1 == 1 && model.triangles.len() + model.spheres.len() > 65_536,
         blob.normals.len() >= 65_536,
         false,
         false,
@@ -94,7 +94,10 @@ fn header(blob: &Blob, model: &Model) -> Checked {
     // The largest material has all its bits set.
     let room = blob.kernel.material_most.count_ones();
     let beside = !shared && blob.spheres.is_empty() && bits(model.triangles.len()) + bits(blob.materials.len()) <= room;
-    let layout = u64::from(has && !shared) << 29 | u64::from(has && shared) << 31 | u64::from(!beside) << 32;
+    let layout = u64::from(has && !shared) << 29
+        | u64::from(has && shared) << 31
+        | u64::from(!beside) << 33
+        | u64::from(beside) << 34;
     rule(!beside || header.material_bits == bits(blob.materials.len()), "bits of materials")?;
     rule(header.needs == needs | pixels | layout, "needs")?;
     rule(header.format == format, "format")?;

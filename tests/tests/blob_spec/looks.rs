@@ -57,8 +57,10 @@ pub(crate) fn needs(blob: &Blob, model: &Model) -> u64 {
         (15, model.lights.iter().any(fades)),
         (16, matches!(model.background, Background::Sky { .. })),
         (17, used(model).any(|m| m.checker.is_some())),
-        (18, tinted && !model.lights.is_empty()),
+        (18, tinted && !model.lights.is_empty() && model.render.shadows),
         (28, schlick),
+        (30, model.lights.len() > 1),
+        (32, blob.header.max_depth > 0 && (share(2) || share(3))),
     ]
     .into_iter()
     .fold(0, |bits, (bit, is_needed)| bits | u64::from(is_needed) << bit)

@@ -10,11 +10,12 @@ mod reader;
 use agree::agree;
 use std::path::Path;
 
+use core_rt::profile::Prefer;
 use glam::DVec3;
 use host_tools::engine;
 use host_tools::import::{self, Embedded, load_from};
 use host_tools::model::{Filter, Format, Light, LightKind, Lobe, Model, Projection, Sphere, Transfer, Triangle};
-use host_tools::prepare::{Options, Prefer, Prepared};
+use host_tools::prepare::{Options, Prepared};
 use painted::is_painted;
 use reader::{Blob, crc32, read};
 use tests::scenes;
@@ -124,7 +125,8 @@ fn what_goes_in_is_read_by_the_document() {
         assert!(mixed.corners.contains(&None) && mixed.corners.iter().any(Option::is_some));
         assert!(
             mixed.header.depth > 5
-                && mixed.header.needs >> 8 == (1 << 25 | 1 << 29 | u64::from(kernel == "exact14") << 32) >> 8
+                && mixed.header.needs >> 8
+                    == (1 << 25 | 1 << 29 | if kernel == "exact14" { 1 << 33 } else { 1 << 34 }) >> 8
         );
         assert!(flat.corners.is_empty() && flat.normals.is_empty());
     }
@@ -180,7 +182,7 @@ fn looks_are_read_by_the_document() {
             }
         }
     }
-    for bit in [10, 11, 12, 13, 15, 16, 17, 18, 28] {
+    for bit in [10, 11, 12, 13, 15, 16, 17, 18, 28, 30, 32] {
         assert!(seen >> bit & 1 == 1, "no scene of these has need {bit}");
     }
 }

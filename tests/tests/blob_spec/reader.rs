@@ -264,7 +264,7 @@ pub(crate) fn read(bytes: &[u8]) -> Blob {
         radius: c.signed(kernel.short),
         material: c.unsigned(kernel.short) as u32,
     });
-    let apart = header.needs >> 32 & 1 == 1;
+    let apart = header.needs >> 33 & 1 == 1;
     let with_id = if apart { triangle_count + sphere_count } else { 0 };
     let mut ids = cursor.section(with_id, |c| c.unsigned(wide(8)) as u32);
     if !apart {

@@ -129,6 +129,14 @@ fn broken_shading<K: Kernel>() {
                 |d| shiny(d).shadow[2] = 1,
                 BlobError::Undeclared(Need::TintedShadow),
             ),
+            (
+                "mirror images of mirror images that are not declared",
+                |d| {
+                    shiny(d).reflected[2] = 1;
+                    d.header.needs = d.header.needs.with(Need::Reflection, true);
+                },
+                BlobError::Undeclared(Need::Bounces),
+            ),
             ("metal that is not declared", |d| shiny(d).flags = Lustre::METAL, BlobError::Undeclared(Need::Schlick)),
             ("a checker that does not exist", |d| d.materials[1].checker = 1, BlobError::Shading),
             ("a checker from the future", |d| checkered(d).reserved = 1, BlobError::Shading),

@@ -98,6 +98,7 @@ fn glossy<K: Kernel>(draft: &mut Draft<K>, choice: usize) {
         Need::Checker,
         Need::Falloff,
         Need::Sky,
+        Need::Bounces,
     ];
     draft.header.needs = needs.into_iter().fold(draft.header.needs, |needs, need| needs.with(need, true));
     draft.header.max_depth = 2;

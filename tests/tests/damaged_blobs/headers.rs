@@ -138,7 +138,7 @@ fn undeclared_needs<K: Kernel>() {
     for need in [
         Need::PointLight,
         Need::DirectionalLight,
-        Need::Shadows,
+        Need::SeveralLights,
         Need::Emission,
         Need::Ambient,
         Need::Srgb,

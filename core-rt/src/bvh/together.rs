@@ -1,0 +1,145 @@
+//! The walk of a tile's rays together. See [`tile`](crate::tile).
+
+use core::num::NonZeroU32;
+
+use zerocopy::FromBytes;
+
+use super::drawing::{Drawing, Found, Nearnesses, UNKNOWN};
+use super::{Bvh, Child, DistanceOf, Intersect, RayOf, Stack, waiting};
+use crate::camera::Camera;
+use crate::kernel::{Kernel, NONE};
+use crate::profile::{Need, Needs, Prefer, Profile};
+use crate::render::Tile;
+use crate::stats::Stats;
+use crate::tile::{Beam, Edges, Footprint, SIDE};
+
+pub(super) type BeamOf<P> = <<P as Profile>::Kernel as Kernel>::Beam;
+
+impl<P: Profile> Bvh<'_, P> {
+    /// Whether tiles walk together, which is more code. They know triangles alone; and a profile that is not of all scenes has spheres where its
+    /// scene has some.
+    const HAS_TILES: bool =
+        matches!(P::PREFER, Prefer::Speed) && (!P::NEEDS.has(Need::Spheres) || P::NEEDS.bits() == Needs::ALL.bits());
+
+    /// See [`Intersect::closest_tile`].
+    #[expect(clippy::too_many_arguments, reason = "the storage of a tile has three parts")]
+    pub(super) fn tile(
+        &self,
+        camera: Option<&Camera<<P::Kernel as Kernel>::Word>>,
+        ray: impl Fn([u16; 2]) -> Option<RayOf<P>>,
+        tile: Tile,
+        hits: &mut [u32],
+        room: &mut [u8],
+        stack: &mut Stack<P::Kernel>,
+        stats: &mut impl Stats,
+    ) {
+        let one = |place, stack: &mut _, stats: &mut _| ray(place).map_or(NONE, |ray| self.closest(&ray, stack, stats));
+        if !Self::HAS_TILES || !self.spheres.is_empty() {
+            for (hit, place) in hits.iter_mut().zip(tile.places()) {
+                *hit = one(place, stack, stats);
+            }
+            return;
+        }
+        let start = room.as_ptr().align_offset(align_of::<Nearnesses>());
+        let room = room.get_mut(start..).and_then(|room| Nearnesses::mut_from_prefix(room).ok());
+        let (camera, mut room) = (camera.filter(|_| room.is_some()), room.map(|(room, _)| room));
+        let stride = usize::from(tile.width);
+        for part in Tile::of([tile.width, tile.height], [SIDE; 2]) {
+            let start = usize::from(part.y) * stride + usize::from(part.x);
+            let hits = hits.get_mut(start..).unwrap_or_default();
+            let part = Tile { x: tile.x + part.x, y: tile.y + part.y, ..part };
+            // By reference: it is not small, and the stack would have it twice.
+            if let (Some(beam), Some(nearness)) = (&camera.and_then(|c| BeamOf::<P>::new(c, part)), &mut room) {
+                self.together(beam, &ray, part, Found::new(hits, stride, nearness, part), stack, stats);
+                continue;
+            }
+            for (y, row) in (part.y..).zip(hits.chunks_mut(stride.max(1)).take(part.height.into())) {
+                for (x, hit) in (part.x..).zip(row.iter_mut().take(part.width.into())) {
+                    *hit = one([x, y], stack, stats);
+                }
+            }
+        }
+    }
+
+    #[inline(never)]
+    fn together(
+        &self,
+        beam: &BeamOf<P>,
+        ray: &impl Fn([u16; 2]) -> Option<RayOf<P>>,
+        tile: Tile,
+        mut found: Found<'_>,
+        stack: &mut Stack<P::Kernel>,
+        stats: &mut impl Stats,
+    ) {
+        let mut edges = Edges::default();
+        let mut limit = beam.reach();
+        let mut next = Some(self.root);
+        stack.clear();
+        while let Some(leaf) = next.and_then(|child| self.entered(beam, child, limit, stack, stats)) {
+            let Child::Leaf { first, count } = Child::unpack(leaf.get()) else { return };
+            for index in first..first + count {
+                let vertices = self.triangles.vertices(index);
+                let Some(vertices) = &vertices else { continue };
+                stats.triangle();
+                match beam.footprint(vertices, &mut edges) {
+                    Footprint::Nothing => {}
+                    Footprint::Edges => Drawing::new(self, &edges, ray, tile, index, &mut found).draw(),
+                    Footprint::Unknown => self.try_all(ray, tile, index, &mut found),
+                }
+            }
+            if found.closes() {
+                limit = beam.limit(found.least());
+            }
+            next = waiting::<P::Kernel>(stack, limit);
+        }
+    }
+
+    #[inline(always)]
+    fn entered(
+        &self,
+        beam: &BeamOf<P>,
+        child: u32,
+        limit: DistanceOf<P>,
+        stack: &mut Stack<P::Kernel>,
+        stats: &mut impl Stats,
+    ) -> Option<NonZeroU32> {
+        match beam.axis() {
+            0 => self.entered_along::<0>(beam, child, limit, stack, stats),
+            1 => self.entered_along::<1>(beam, child, limit, stack, stats),
+            _ => self.entered_along::<2>(beam, child, limit, stack, stats),
+        }
+    }
+
+    #[inline(never)]
+    fn entered_along<const AXIS: usize>(
+        &self,
+        beam: &BeamOf<P>,
+        child: u32,
+        limit: DistanceOf<P>,
+        stack: &mut Stack<P::Kernel>,
+        stats: &mut impl Stats,
+    ) -> Option<NonZeroU32> {
+        self.descend(child, limit, stack, stats, |node, child| beam.enter::<AXIS>(node, child, limit))
+    }
+
+    /// Puts a triangle where it is the nearest, by testing every ray.
+    #[inline(never)]
+    fn try_all(&self, ray: &impl Fn([u16; 2]) -> Option<RayOf<P>>, tile: Tile, index: u32, found: &mut Found<'_>) {
+        for [x, y] in tile.places() {
+            let place = [x - tile.x, y - tile.y].map(usize::from);
+            let hit = found.hit(place);
+            if ray([x, y]).is_some_and(|ray| self.replaces(&ray, index, hit)) {
+                found.set(place, index, 0);
+                found.band = UNKNOWN;
+            }
+        }
+    }
+
+    /// Whether a ray hits a triangle, nearer than another that it hits or that is [`NONE`].
+    #[inline(never)]
+    pub(super) fn replaces(&self, ray: &RayOf<P>, index: u32, other: u32) -> bool {
+        let depth = |index: u32| self.triangles.of(index, |triangle| P::Kernel::intersect(ray, triangle)).flatten();
+        let Some(new) = depth(index) else { return false };
+        depth(other).is_none_or(|old| self.nearer((index, &new), (other, &old)))
+    }
+}
