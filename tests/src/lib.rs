@@ -10,6 +10,7 @@ pub mod meshes;
 pub mod octants;
 pub mod oracle;
 pub mod painted;
+pub mod planes;
 pub mod random;
 pub mod rays;
 pub mod scenes;
