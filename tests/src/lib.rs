@@ -4,6 +4,7 @@ pub mod ball_rays;
 pub mod balls;
 pub mod blobs;
 pub mod boards;
+pub mod chips;
 pub mod documents;
 pub mod fuzz;
 pub mod meshes;
