@@ -3,42 +3,24 @@
 //! On chips in exact instructions, as far as a mesh fits; on the host in box and triangle tests, which are exact too, and in
 //! time as a ratio to that of the coarsest mesh, the meshes taking turns.
 
-use std::collections::HashMap;
-use std::hint::black_box;
 use std::time::Instant;
 
-use core_rt::bvh::{Intersect, Waiting};
 use core_rt::exact::{Exact14, Exact29};
 use core_rt::kernel::Kernel;
-use core_rt::profile::Full;
-use core_rt::scene::{MAX_DEPTH, Scene};
-use core_rt::stats::{Counts, NoStats, Stats};
+use core_rt::stats::{Counts, NoStats};
 use firmware_rt::board::Board;
 use firmware_rt::hits::Way;
-use glam::DVec3;
 use host_tools::emulate::counter::Counter;
-use host_tools::model::{Camera, Light, LightKind, Model, Projection, RenderSettings, Triangle};
+use host_tools::model::{Model, RenderSettings};
 use host_tools::prepare::{Blob, Options, prepare};
 use plotters::prelude::*;
 use tests::chips::Job;
+use tests::growth::{Line, SIDES, find, mesh};
 
 use crate::table::{table, thousands};
 
-/// Parts of an edge of the octahedron from which meshes are blown up: the number of triangles about doubles.
-const SIDES: [i32; 14] = [4, 6, 8, 11, 16, 22, 32, 45, 64, 90, 128, 181, 256, 354];
-
 /// Pixels on a chip, and on the host.
 const SIZES: [[u32; 2]; 2] = [[64, 48], [320, 240]];
-
-/// What all costs are shown as multiples of: the mesh of 968 triangles.
-const BASE: usize = 968;
-
-/// A cost by number of triangles.
-struct Line {
-    name: String,
-    /// Number of triangles, cost.
-    points: Vec<(usize, f64)>,
-}
 
 /// All of them.
 pub(crate) struct Growth {
@@ -107,39 +89,7 @@ fn host(models: &[Model], rounds: usize) -> [Line; 2] {
     [line("host, exact29, tests", tests), line("host, exact29, time", times.collect())]
 }
 
-/// Finds the nearest hits of all camera rays, one by one.
-#[inline(never)]
-fn find(blob: &Blob, stats: &mut impl Stats) {
-    let scene = Scene::<Full<Exact29>>::new_checked(blob.bytes()).expect("a blob just made");
-    let mut stack = heapless::Vec::<Waiting<Exact29>, MAX_DEPTH>::new();
-    let [width, height] = scene.frame.size;
-    for place in (0..height).flat_map(|y| (0..width).map(move |x| [x, y])) {
-        if let Some(ray) = scene.primary(&scene.camera, place[0], place[1]) {
-            black_box(scene.bvh.closest(&ray, &mut stack, stats));
-        }
-    }
-}
-
 impl Growth {
-    /// The cost of a line at a number of triangles, in multiples of that of the base.
-    fn relative(line: &Line) -> Vec<(usize, f64)> {
-        let base = line.points.iter().find(|(triangles, _)| *triangles == BASE).map_or(1.0, |&(_, cost)| cost);
-        line.points.iter().map(|&(triangles, cost)| (triangles, cost / base)).collect()
-    }
-
-    /// By how much a cost grows for each doubling, in the coarser and in the finer half of a line.
-    fn steps(line: &Line) -> [f64; 2] {
-        let points = Self::relative(line);
-        let middle = points.len() / 2;
-        let step = |part: &[(usize, f64)]| match (part.first(), part.last()) {
-            (Some(&(few, least)), Some(&(many, most))) if many > few => {
-                (most - least) / libm::log2(many as f64 / few as f64)
-            }
-            _ => 0.0,
-        };
-        [step(&points[..=middle.min(points.len().saturating_sub(1))]), step(&points[middle..])]
-    }
-
     pub(crate) fn text(&self) -> String {
         let mut text = String::from(
             "## Growth with the number of triangles\n\nA ball of bumps, divided ever finer: what the nearest hit of a camera ray \
@@ -167,12 +117,12 @@ impl Growth {
         text += "Instructions, tests, and time over that at 128 triangles. What each doubling adds, of the cost at 968 triangles, in \
                  the coarser and in the finer half:\n\n";
         let rows = self.lines.iter().map(|line| {
-            let [coarse, fine] = Self::steps(line);
+            let [coarse, fine] = line.steps();
             vec![
                 line.name.clone(),
                 format!("{coarse:.3}"),
                 format!("{fine:.3}"),
-                if fine <= coarse { "no" } else { "yes" }.into(),
+                if line.is_logarithmic() { "no" } else { "yes" }.into(),
             ]
         });
         text += &table(&["", "coarser half", "finer half", "grows faster than the logarithm"].map(String::from), rows);
@@ -190,7 +140,7 @@ impl Growth {
         let colours = [(0, 114, 178), (86, 180, 233), (213, 94, 0), (230, 159, 0), (0, 158, 115), (204, 121, 167)];
         let root = backend.into_drawing_area();
         root.fill(&WHITE)?;
-        let relative: Vec<_> = self.lines.iter().map(Self::relative).collect();
+        let relative: Vec<_> = self.lines.iter().map(Line::relative).collect();
         let most = relative.iter().flatten().fold(1.0, |most: f64, &(_, cost)| most.max(cost));
         let mut chart = ChartBuilder::on(&root)
             .margin(10)
@@ -222,46 +172,5 @@ impl Growth {
             .label_font(("sans-serif", 13))
             .draw()?;
         root.present()
-    }
-}
-
-/// An octahedron, each face divided in `side` squared, blown up to a ball with bumps, that fills most of the view.
-fn mesh(side: i32) -> Model {
-    let (mut positions, mut numbers, mut triangles) = (Vec::new(), HashMap::new(), Vec::new());
-    let mut vertex = |place: [i32; 3]| -> u32 {
-        *numbers.entry(place).or_insert_with(|| {
-            let direction = DVec3::from_array(place.map(f64::from)).normalize();
-            let [a, b, c] = [9.0 * direction.x, 7.0 * direction.y, 8.0 * direction.z].map(libm::sin);
-            positions.push(direction * (1.0 + 0.1 * a * b * c));
-            positions.len() as u32 - 1
-        })
-    };
-    for octant in 0..8 {
-        let signs = [0, 1, 2].map(|axis| if octant >> axis & 1 == 0 { 1 } else { -1 });
-        let is_mirrored = signs.iter().product::<i32>() < 0;
-        let mut put = |corners: [[i32; 2]; 3]| {
-            let [a, b, c] = corners.map(|[i, j]| vertex([i * signs[0], j * signs[1], (side - i - j) * signs[2]]));
-            let vertices = if is_mirrored { [a, c, b] } else { [a, b, c] };
-            triangles.push(Triangle { vertices, normals: None, material: 0 });
-        };
-        for (i, j) in (0..side).flat_map(|i| (0..side - i).map(move |j| (i, j))) {
-            put([[i, j], [i + 1, j], [i, j + 1]]);
-            if i + j + 1 < side {
-                put([[i + 1, j], [i + 1, j + 1], [i, j + 1]]);
-            }
-        }
-    }
-    let position = DVec3::new(0.9, 0.8, 3.3);
-    Model {
-        positions,
-        triangles,
-        camera: Camera {
-            position,
-            look_at: DVec3::ZERO,
-            up: DVec3::Y,
-            projection: Projection::Perspective { fov_y: 0.6 },
-        },
-        lights: vec![Light::new(LightKind::Point(position), DVec3::ONE)],
-        ..Model::default()
     }
 }

@@ -7,6 +7,7 @@ pub mod boards;
 pub mod chips;
 pub mod documents;
 pub mod fuzz;
+pub mod growth;
 pub mod meshes;
 pub mod octants;
 pub mod oracle;
