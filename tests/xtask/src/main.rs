@@ -30,7 +30,7 @@ usage: cargo xtask VERB
   bench-scene          writes scenes/bench-1k anew";
 
 /// The tests whose files are renewed.
-const BLESSED: [&str; 9] = [
+const BLESSED: [&str; 11] = [
     "bench_scene",
     "goldens",
     "machines",
@@ -38,6 +38,8 @@ const BLESSED: [&str; 9] = [
     "instructions",
     "numerics",
     "gallery",
+    "layouts",
+    "raystones",
     "stress",
     "readme",
 ];
