@@ -1,0 +1,136 @@
+//! Between which columns a triangle lies in each row of a tile.
+//!
+//! An edge function is linear, so the column where it is 0 moves by the same step from row to row: one reciprocal an edge, and
+//! an addition a row. Of a triangle's edges one has the others opposite. Columns are counted towards that one, to the right or to
+//! the left, and the least of the two widths up to it is that of the row. Beside each edge is a margin, for what its column may be
+//! off and for where its function is not certain: pixels in that are asked by themselves.
+//!
+//! **Margins.** Let r be an edge function's step to the right, d that down, and c(y) = -(first + y d) / r. Where |r| is less than
+//! |d| / 2^10 or than 2^15 it is taken larger, and the function with it in all columns of the tile but the one that it decreases
+//! towards least: columns are let in by that, and the margin has the most that it grew by. The reciprocal is low by 2^-14 or high
+//! by 2^-15 of it, for all rows alike: in the tile a column is off by less than 16 / 2^14, which is 4 of its unit. The first one is
+//! cut to a unit and rounded, and so is each of 15 steps, by less than 3/2. That is less than [`OFF`].
+
+use crate::num::{BitLength, mantissa};
+use crate::tile::{Edges, Linear, SIDE};
+
+/// Fractional bits of a column.
+const COLUMN_BITS: u32 = 12;
+
+/// A step from row to row is at most about 2 to this, columns.
+const STEEP_BITS: u32 = 10;
+
+/// The least step of an edge function from column to column: columns are below 2^31 2^12 / 2^15 = 2^28 then.
+const SLOPE_BITS: u32 = 15;
+
+/// By what a column in the tile may be off.
+const OFF: i32 = 32;
+
+/// The pixels of a row that a triangle may cover, if any, and between which ones it certainly does.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Row {
+    pub(super) first: i32,
+    pub(super) last: i32,
+    pub(super) certain: [i32; 2],
+}
+
+/// An edge's place in a row: the column up to which a triangle may be, for an edge to the left as its negative.
+#[derive(Clone, Copy, Debug)]
+struct Crossing {
+    column: i32,
+    /// What is added from row to row.
+    step: i32,
+    /// Farther inwards by this it certainly is.
+    margin: i32,
+}
+
+impl Crossing {
+    /// Of an edge function that is at least `uncertain` where the triangle certainly is.
+    #[inline(always)]
+    fn new(edge: &Linear, uncertain: i32) -> Self {
+        const LAST: i32 = SIDE as i32 - 1;
+        let slope = edge.right.unsigned_abs();
+        let taken = slope.max(edge.down.unsigned_abs() >> STEEP_BITS).max(1 << SLOPE_BITS);
+        let grown = LAST * (taken - slope) as i32;
+        let log2 = taken.bit_length() - 1;
+        // Cut to 16 bits.
+        let m = mantissa(taken >> (log2 - 15));
+        let shift = (log2 - COLUMN_BITS) & 31;
+        // A value times the mantissa is below 2^47; a quotient is rounded to nearest.
+        let columns = |value: i32| {
+            let product = (value >> 16) * m as i32 + (((value & 0xffff) as u32 * m) >> 16) as i32;
+            (product + ((1 << shift) >> 1)) >> shift
+        };
+        let first = if edge.right < 0 { edge.first + grown } else { edge.first };
+        Self { column: columns(first) + OFF, step: columns(edge.down), margin: columns(uncertain + grown) + 2 * OFF }
+    }
+}
+
+/// The rows of a triangle, from above.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rows {
+    /// Whether the edge that has the others opposite is the left one.
+    is_left: bool,
+    /// Up to where the triangle may be, towards that edge, and what is added from row to row.
+    end: i32,
+    step: i32,
+    /// From there back to the other two, and what is added.
+    widths: [i32; 2],
+    widenings: [i32; 2],
+    /// The margins of the one and of the others.
+    margin: i32,
+    margins: [i32; 2],
+}
+
+impl Rows {
+    /// `None` where no edge has the others opposite.
+    #[inline(always)]
+    pub(super) fn new(edges: &Edges) -> Option<Self> {
+        let [a, b, c] = &edges.edges;
+        let is_left = [a, b, c].map(|edge| edge.right >= 0);
+        let order = match is_left {
+            [a, b, c] if a == b && b == c => return None,
+            [a, b, c] if b == c => [0, 1, 2],
+            [a, b, c] if a == c => [1, 0, 2],
+            _ => [2, 0, 1],
+        };
+        let [alone, b, c] = order.map(|edge: usize| Crossing::new(&edges.edges[edge], edges.uncertain[edge]));
+        Some(Self {
+            is_left: is_left[order[0]],
+            end: alone.column,
+            step: alone.step,
+            widths: [alone.column + b.column, alone.column + c.column],
+            widenings: [alone.step + b.step, alone.step + c.step],
+            margin: alone.margin,
+            margins: [b.margin, c.margin],
+        })
+    }
+
+    /// Whether the triangle may be in this row.
+    #[inline(always)]
+    pub(super) fn is_reached(&self) -> bool {
+        self.widths[0] | self.widths[1] >= 0
+    }
+
+    /// Goes on to the next row.
+    #[inline(always)]
+    pub(super) fn advance(&mut self) {
+        self.end += self.step;
+        self.widths = [self.widths[0] + self.widenings[0], self.widths[1] + self.widenings[1]];
+    }
+
+    /// This row, of a tile with a last column.
+    #[inline(always)]
+    pub(super) fn row(&self, last: i32) -> Row {
+        let (end, [b, c]) = (self.end, self.widths);
+        let up = |column: i32| (column + (1 << COLUMN_BITS) - 1) >> COLUMN_BITS;
+        let start = up(end - b.min(c));
+        let certain_start = up(end - (b - self.margins[0]).min(c - self.margins[1]));
+        let [end, certain_end] = [end, end - self.margin].map(|column| column >> COLUMN_BITS);
+        if self.is_left {
+            Row { first: (-end).max(0), last: (-start).min(last), certain: [-certain_end, -certain_start] }
+        } else {
+            Row { first: start.max(0), last: end.min(last), certain: [certain_start, certain_end] }
+        }
+    }
+}
