@@ -104,15 +104,22 @@ pub enum Footprint {
     Edges,
 }
 
+/// An edge of a triangle in the pixels of a tile.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Edge {
+    /// Negative where the ray certainly misses.
+    pub line: Linear,
+    /// All of a triangle's are at least these where it certainly hits.
+    pub uncertain: i32,
+    /// What directions are multiplied by for their values.
+    pub vector: Triple<i32>,
+}
+
 /// A triangle in the pixels of a tile.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Edges {
-    /// One is negative where the ray certainly misses.
-    pub edges: [Linear; 3],
-    /// All are at least these where it certainly hits.
-    pub uncertain: [i32; 3],
-    /// What directions are multiplied by for their values.
-    pub vectors: [Triple<i32>; 3],
+    /// One after the other.
+    pub edges: [Edge; 3],
     /// The inverse of the depth, before it is shifted.
     pub nearness: Linear,
     /// By what it is shifted to the right.

@@ -128,11 +128,7 @@ impl<'a, 'h, 'b, P: Profile, R: Fn([u16; 2]) -> Option<RayOf<P>>> Drawing<'a, 'h
         let Candidate { edges, tile, .. } = self.candidate;
         let (last, height) = (i32::from(tile.width) - 1, i32::from(tile.height));
         if let Some(mut rows) = Rows::new(edges) {
-            let mut y = 0;
-            while y < height && !rows.is_reached() {
-                rows.advance();
-                y += 1;
-            }
+            let mut y = rows.skip(height);
             // A triangle is convex: below a row that it does not reach is none that it does.
             while y < height && rows.is_reached() {
                 self.row(rows.row(last), y);
@@ -159,22 +155,21 @@ impl<'a, 'h, 'b, P: Profile, R: Fn([u16; 2]) -> Option<RayOf<P>>> Drawing<'a, 'h
             self.pixel(last, y);
             last -= 1;
         }
-        let (Ok(count), place) = (usize::try_from(last + 1 - first), [first as usize, y as usize]) else { return };
-        let start = place[1] * self.found.stride + place[0];
-        let hits = self.found.hits.get_mut(start..start + count).unwrap_or_default();
-        let start = place[1] << SIDE_BITS | place[0];
-        let nearnesses = self.found.nearness.get_mut(start..start + count).unwrap_or_default();
         let mut value = self.candidate.edges.nearness(first, y);
-        for (x, (hit, old)) in hits.iter_mut().zip(nearnesses).enumerate() {
+        let (start, row) = (y as usize * self.found.stride, (y as usize) << SIDE_BITS);
+        while first <= last {
+            let old = &mut self.found.nearness[(row | first as usize) % PIXELS];
             let nearness = within(value >> (self.shift & 31));
             let nearer = nearness - i32::from(*old);
-            if nearer > self.spread
-                || nearer >= -self.spread && self.candidate.replaces([first + x as i32, y], *hit, false)
+            if nearer >= -self.spread
+                && let Some(hit) = self.found.hits.get_mut(start + first as usize)
+                && (nearer > self.spread || self.candidate.replaces([first, y], *hit, false))
             {
                 (*hit, *old) = (self.candidate.index, nearness as i16);
                 self.changed = true;
             }
             value += self.candidate.edges.nearness.right;
+            first += 1;
         }
     }
 

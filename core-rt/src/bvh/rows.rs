@@ -11,8 +11,8 @@
 //! by 2^-15 of it, for all rows alike: in the tile a column is off by less than 16 / 2^14, which is 4 of its unit. The first one is
 //! cut to a unit and rounded, and so is each of 15 steps, by less than 3/2. That is less than [`OFF`].
 
-use crate::num::{BitLength, mantissa};
-use crate::tile::{Edges, Linear, SIDE};
+use crate::num::{byte_length, mantissa};
+use crate::tile::{Edge, Edges, Linear, SIDE};
 
 /// Fractional bits of a column.
 const COLUMN_BITS: u32 = 12;
@@ -45,24 +45,26 @@ struct Crossing {
 }
 
 impl Crossing {
-    /// Of an edge function that is at least `uncertain` where the triangle certainly is.
     #[inline(always)]
-    fn new(edge: &Linear, uncertain: i32) -> Self {
+    fn new(edge: &Edge) -> Self {
         const LAST: i32 = SIDE as i32 - 1;
-        let slope = edge.right.unsigned_abs();
-        let taken = slope.max(edge.down.unsigned_abs() >> STEEP_BITS).max(1 << SLOPE_BITS);
+        let Linear { first, right, down } = edge.line;
+        let slope = right.unsigned_abs();
+        let taken = slope.max(down.unsigned_abs() >> STEEP_BITS).max(1 << SLOPE_BITS);
         let grown = LAST * (taken - slope) as i32;
-        let log2 = taken.bit_length() - 1;
-        // Cut to 16 bits.
-        let m = mantissa(taken >> (log2 - 15));
-        let shift = (log2 - COLUMN_BITS) & 31;
+        // Below 2^16, and not 0.
+        let high = taken >> SLOPE_BITS;
+        let over = if high >> 8 == 0 { byte_length(high) } else { byte_length(high >> 8) + 8 } - 1;
+        let m = mantissa(taken >> over);
+        let shift = over + SLOPE_BITS - COLUMN_BITS;
         // A value times the mantissa is below 2^47; a quotient is rounded to nearest.
+        let half = (1 << shift) >> 1;
         let columns = |value: i32| {
             let product = (value >> 16) * m as i32 + (((value & 0xffff) as u32 * m) >> 16) as i32;
-            (product + ((1 << shift) >> 1)) >> shift
+            (product + half) >> shift
         };
-        let first = if edge.right < 0 { edge.first + grown } else { edge.first };
-        Self { column: columns(first) + OFF, step: columns(edge.down), margin: columns(uncertain + grown) + 2 * OFF }
+        let margin = columns(edge.uncertain + 2 * grown) + 2 * OFF;
+        Self { column: columns(first + grown) + OFF, step: columns(down), margin }
     }
 }
 
@@ -87,16 +89,17 @@ impl Rows {
     #[inline(always)]
     pub(super) fn new(edges: &Edges) -> Option<Self> {
         let [a, b, c] = &edges.edges;
-        let is_left = [a, b, c].map(|edge| edge.right >= 0);
-        let order = match is_left {
-            [a, b, c] if a == b && b == c => return None,
-            [a, b, c] if b == c => [0, 1, 2],
-            [a, b, c] if a == c => [1, 0, 2],
-            _ => [2, 0, 1],
+        let is_left = |edge: &Edge| edge.line.right >= 0;
+        let (alone, b, c) = match (is_left(a) == is_left(b), is_left(a) == is_left(c)) {
+            (true, true) => return None,
+            (false, false) => (a, b, c),
+            (true, false) => (c, a, b),
+            (false, true) => (b, a, c),
         };
-        let [alone, b, c] = order.map(|edge: usize| Crossing::new(&edges.edges[edge], edges.uncertain[edge]));
+        let is_left = is_left(alone);
+        let [alone, b, c] = [Crossing::new(alone), Crossing::new(b), Crossing::new(c)];
         Some(Self {
-            is_left: is_left[order[0]],
+            is_left,
             end: alone.column,
             step: alone.step,
             widths: [alone.column + b.column, alone.column + c.column],
@@ -110,6 +113,18 @@ impl Rows {
     #[inline(always)]
     pub(super) fn is_reached(&self) -> bool {
         self.widths[0] | self.widths[1] >= 0
+    }
+
+    /// Goes on to the first row that the triangle may be in, of so many; how many are left out.
+    #[inline(always)]
+    pub(super) fn skip(&mut self, height: i32) -> i32 {
+        let mut skipped = 0;
+        while !self.is_reached() && skipped < height {
+            self.widths = [self.widths[0] + self.widenings[0], self.widths[1] + self.widenings[1]];
+            skipped += 1;
+        }
+        self.end += skipped * self.step;
+        skipped
     }
 
     /// Goes on to the next row.

@@ -24,7 +24,7 @@ use crate::camera::Camera;
 use crate::kernel::Vertices;
 use crate::num::{Triple, Word, cross, mantissa, narrow_dot, reciprocal};
 use crate::render::Tile;
-use crate::tile::{Beam, Edges, Footprint, Linear, SIDE};
+use crate::tile::{Beam, Edge, Edges, Footprint, Linear, SIDE};
 
 /// The bits of a direction's component, without those below the unit.
 const UNIT_BITS: u32 = 13;
@@ -305,15 +305,15 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
         }
         let is_back = volume < zero;
         let shift = W::Word::common_bits(a.into_iter().chain(b).chain(c)).saturating_sub(self.vector_bits);
-        for (edge, vector) in [a, b, c].into_iter().enumerate() {
+        for (edge, vector) in edges.edges.iter_mut().zip([a, b, c]) {
             let g = if is_back { vector.map(|c| -rounded(c, shift)) } else { vector.map(|c| rounded(c, shift)) };
             let linear = self.linear(g);
             let band = self.off(g) + (self.length >> 1) + LINEAR_ERROR;
-            let linear = Linear { first: linear.first + band, ..linear };
-            if linear.most(self.last) < 0 {
+            let line = Linear { first: linear.first + band, ..linear };
+            if line.most(self.last) < 0 {
                 return Footprint::Nothing;
             }
-            (edges.edges[edge], edges.uncertain[edge], edges.vectors[edge]) = (linear, 2 * band, g);
+            *edge = Edge { line, uncertain: 2 * band, vector: g };
         }
         let (leading, length) = (if is_back { -volume } else { volume }).leading();
         let m = mantissa(leading) as i32;
@@ -336,7 +336,7 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
     #[inline]
     fn meets(ray: &Ray<W>, edges: &Edges) -> Option<bool> {
         let error = (W::Word::ONE + W::Word::ONE + W::Word::ONE) << (W::DIRECTION_BITS - 1);
-        let values = edges.vectors.map(|vector| narrow_dot(ray.direction, vector.map(W::Word::from_i32)));
+        let values = edges.edges.map(|edge| narrow_dot(ray.direction, edge.vector.map(W::Word::from_i32)));
         if values.iter().any(|&value| value < -error) {
             Some(false)
         } else {
