@@ -85,6 +85,13 @@ pub struct Linear {
 }
 
 impl Linear {
+    /// In a pixel.
+    #[inline(always)]
+    #[must_use]
+    pub fn at(&self, x: i32, y: i32) -> i32 {
+        self.first + x * self.right + y * self.down
+    }
+
     /// The largest value in a tile whose last pixel is at `last`.
     #[inline(always)]
     #[must_use]
@@ -126,14 +133,4 @@ pub struct Edges {
     pub shift: u32,
     /// By what it may be wrong, before it is shifted.
     pub band: i32,
-}
-
-impl Edges {
-    /// The inverse of the depth in a pixel, before it is shifted.
-    #[inline(always)]
-    #[must_use]
-    pub fn nearness(&self, x: i32, y: i32) -> i32 {
-        let Linear { first, right, down } = self.nearness;
-        first + x * right + y * down
-    }
 }

@@ -7,7 +7,7 @@ use crate::kernel::NONE;
 use crate::num::BitLength;
 use crate::profile::Profile;
 use crate::render::Tile;
-use crate::tile::{Beam, Edges, ROOM, SIDE};
+use crate::tile::{Beam, Edges, Linear, ROOM, SIDE};
 
 /// A nearness a pixel, in rows of [`SIDE`].
 pub(super) type Nearnesses = [i16; PIXELS];
@@ -93,12 +93,15 @@ pub(super) struct Drawing<'a, 'h, 'b, P: Profile, R> {
     candidate: Candidate<'a, 'b, P, R>,
     /// By what the triangle's nearness is shifted to the right, in all.
     shift: u32,
+    /// Whether there is room for it in all pixels of the tile.
+    fits: bool,
+    /// It then, if there is.
+    nearness_q16: Linear,
     /// By what it may be wrong then; one for each shift, and one for that of the band.
     band: i32,
     /// By what its difference from another may be.
     spread: i32,
     found: &'a mut Found<'h>,
-    changed: bool,
 }
 
 impl<'a, 'h, 'b, P: Profile, R: Fn([u16; 2]) -> Option<RayOf<P>>> Drawing<'a, 'h, 'b, P, R> {
@@ -116,10 +119,16 @@ impl<'a, 'h, 'b, P: Profile, R: Fn([u16; 2]) -> Option<RayOf<P>>> Drawing<'a, 'h
             most.max(0).unsigned_abs().bit_length().saturating_sub(NEARNESS_BITS)
         });
         let shift = (edges.shift + shift).min(31);
-        let band = (edges.band >> shift) + 2;
+        let band = (edges.band >> shift) + 3;
         let spread = found.band + band;
+        // The sum of the magnitudes is less than 2^32, each cut by less than one.
+        let steps = u32::from(SIDE - 1) * (edges.nearness.right.unsigned_abs() + edges.nearness.down.unsigned_abs());
+        let fits = (edges.nearness.first.unsigned_abs() >> shift) + (steps >> shift) + 2 <= 1 << 15;
+        let scaled = |value: i32| if shift < 16 { value << (16 - shift) } else { value >> (shift - 16) };
+        let Linear { first, right, down } = edges.nearness;
+        let nearness_q16 = Linear { first: scaled(first), right: scaled(right), down: scaled(down) };
         let candidate = Candidate { bvh, ray, index, tile, edges };
-        Self { candidate, shift, band, spread, found, changed: false }
+        Self { candidate, shift, fits, nearness_q16, band, spread, found }
     }
 
     /// Goes through the tile by rows.
@@ -131,18 +140,22 @@ impl<'a, 'h, 'b, P: Profile, R: Fn([u16; 2]) -> Option<RayOf<P>>> Drawing<'a, 'h
             let mut y = rows.skip(height);
             // A triangle is convex: below a row that it does not reach is none that it does.
             while y < height && rows.is_reached() {
-                self.row(rows.row(last), y);
+                if let Some(row) = rows.row(last) {
+                    self.row(row, y);
+                }
                 rows.advance();
                 y += 1;
             }
         } else {
             for y in 0..height {
-                (0..=last).for_each(|x| self.pixel(x, y));
+                for x in 0..=last {
+                    if edges.edges.iter().all(|edge| edge.line.at(x, y) >= 0) {
+                        self.pixel(x, y);
+                    }
+                }
             }
         }
-        if self.changed {
-            self.found.band = self.found.band.max(self.band);
-        }
+        self.found.band = self.found.band.max(self.band);
     }
 
     #[inline(always)]
@@ -155,33 +168,49 @@ impl<'a, 'h, 'b, P: Profile, R: Fn([u16; 2]) -> Option<RayOf<P>>> Drawing<'a, 'h
             self.pixel(last, y);
             last -= 1;
         }
-        let mut value = self.candidate.edges.nearness(first, y);
-        let (start, row) = (y as usize * self.found.stride, (y as usize) << SIDE_BITS);
         while first <= last {
-            let old = &mut self.found.nearness[(row | first as usize) % PIXELS];
-            let nearness = within(value >> (self.shift & 31));
-            let nearer = nearness - i32::from(*old);
-            if nearer >= -self.spread
-                && let Some(hit) = self.found.hits.get_mut(start + first as usize)
-                && (nearer > self.spread || self.candidate.replaces([first, y], *hit, false))
-            {
-                (*hit, *old) = (self.candidate.index, nearness as i16);
-                self.changed = true;
+            let left_out = self.fill(first, last, y);
+            if left_out <= last {
+                self.pixel(left_out, y);
             }
-            value += self.candidate.edges.nearness.right;
-            first += 1;
+            first = left_out + 1;
         }
+    }
+
+    /// Goes through pixels of a row that the triangle certainly covers, up to the first whose ray is to be asked.
+    #[inline(never)]
+    fn fill(&mut self, first: i32, last: i32, y: i32) -> i32 {
+        if !self.fits {
+            return first;
+        }
+        let Linear { first: value, right, down } = self.nearness_q16;
+        let mut value = value.wrapping_add(first * right).wrapping_add(y * down);
+        let (place, count) = ([first as usize, y as usize], (last + 1 - first) as usize);
+        let hits = self.found.hits.get_mut(place[1] * self.found.stride + place[0]..).unwrap_or_default();
+        let start = (place[1] << SIDE_BITS | place[0]) % PIXELS;
+        let places = hits.iter_mut().zip(&mut self.found.nearness[start..]).take(count);
+        let (spread, index) = (self.spread, self.candidate.index);
+        for (done, (hit, old)) in places.enumerate() {
+            let nearness = value >> 16;
+            let nearer = nearness - i32::from(*old);
+            if nearer > spread {
+                (*hit, *old) = (index, nearness as i16);
+            } else if nearer >= -spread {
+                return first + done as i32;
+            }
+            value += right;
+        }
+        last + 1
     }
 
     /// A pixel that the triangle may cover.
     #[inline(never)]
     fn pixel(&mut self, x: i32, y: i32) {
-        let nearness = within(self.candidate.edges.nearness(x, y) >> (self.shift & 31));
+        let nearness = within(self.candidate.edges.nearness.at(x, y) >> (self.shift & 31));
         let place = [x as usize, y as usize];
         let nearer = nearness - i32::from(self.found.nearness[(place[1] << SIDE_BITS | place[0]) % PIXELS]);
         if nearer >= -self.spread && self.candidate.replaces([x, y], self.found.hit(place), nearer > self.spread) {
             self.found.set(place, self.candidate.index, nearness as i16);
-            self.changed = true;
         }
     }
 }

@@ -26,7 +26,7 @@ const SLOPE_BITS: u32 = 15;
 /// By what a column in the tile may be off.
 const OFF: i32 = 32;
 
-/// The pixels of a row that a triangle may cover, if any, and between which ones it certainly does.
+/// The pixels of a row that a triangle may cover, and between which ones it certainly does.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row {
     pub(super) first: i32,
@@ -63,7 +63,8 @@ impl Crossing {
             let product = (value >> 16) * m as i32 + (((value & 0xffff) as u32 * m) >> 16) as i32;
             (product + half) >> shift
         };
-        let margin = columns(edge.uncertain + 2 * grown) + 2 * OFF;
+        // In fewer bits: below 2^22, and cut by less than 2^6 2^12 / 2^15 = 8 units.
+        let margin = ((((edge.uncertain + 2 * grown) >> 6) as u32 * m) >> 10 >> shift) as i32 + 2 * OFF + 10;
         Self { column: columns(first + grown) + OFF, step: columns(down), margin }
     }
 }
@@ -134,18 +135,19 @@ impl Rows {
         self.widths = [self.widths[0] + self.widenings[0], self.widths[1] + self.widenings[1]];
     }
 
-    /// This row, of a tile with a last column.
+    /// The pixels of this row, of a tile with a last column, that the triangle may cover; `None` where there are none.
     #[inline(always)]
-    pub(super) fn row(&self, last: i32) -> Row {
+    pub(super) fn row(&self, last: i32) -> Option<Row> {
         let (end, [b, c]) = (self.end, self.widths);
         let up = |column: i32| (column + (1 << COLUMN_BITS) - 1) >> COLUMN_BITS;
-        let start = up(end - b.min(c));
-        let certain_start = up(end - (b - self.margins[0]).min(c - self.margins[1]));
-        let [end, certain_end] = [end, end - self.margin].map(|column| column >> COLUMN_BITS);
-        if self.is_left {
-            Row { first: (-end).max(0), last: (-start).min(last), certain: [-certain_end, -certain_start] }
-        } else {
-            Row { first: start.max(0), last: end.min(last), certain: [certain_start, certain_end] }
+        let down = |column: i32| column >> COLUMN_BITS;
+        let turned = |[start, end]: [i32; 2]| if self.is_left { [-end, -start] } else { [start, end] };
+        let [first, end_here] = turned([up(end - b.min(c)), down(end)]);
+        let (first, last) = (first.max(0), end_here.min(last));
+        if first > last {
+            return None;
         }
+        let width = (b - self.margins[0]).min(c - self.margins[1]);
+        Some(Row { first, last, certain: turned([up(end - width), down(end - self.margin)]) })
     }
 }

@@ -289,7 +289,7 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
         Some(near)
     }
 
-    #[inline(never)]
+    #[inline(always)]
     fn footprint(&self, vertices: &Vertices, edges: &mut Edges) -> Footprint {
         let [p, q, r] = vertices.map(|vertex| {
             let from = |axis: usize| W::Word::from_i32(vertex[axis]) - self.origin[axis];
