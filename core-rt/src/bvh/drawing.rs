@@ -121,11 +121,10 @@ impl<'a, 'h, 'b, P: Profile, R: Fn([u16; 2]) -> Option<RayOf<P>>> Drawing<'a, 'h
         let shift = (edges.shift + shift).min(31);
         let band = (edges.band >> shift) + 3;
         let spread = found.band + band;
-        // The sum of the magnitudes is less than 2^32, each cut by less than one.
-        let steps = u32::from(SIDE - 1) * (edges.nearness.right.unsigned_abs() + edges.nearness.down.unsigned_abs());
-        let fits = (edges.nearness.first.unsigned_abs() >> shift) + (steps >> shift) + 2 <= 1 << 15;
-        let scaled = |value: i32| if shift < 16 { value << (16 - shift) } else { value >> (shift - 16) };
         let Linear { first, right, down } = edges.nearness;
+        let [first_size, right_size, down_size] = [first, right, down].map(i32::unsigned_abs);
+        let fits = (first_size >> 1 | right_size << SIDE_BITS | down_size << SIDE_BITS) >> shift >> 13 == 0;
+        let scaled = |value: i32| if shift < 16 { value << (16 - shift) } else { value >> (shift - 16) };
         let nearness_q16 = Linear { first: scaled(first), right: scaled(right), down: scaled(down) };
         let candidate = Candidate { bvh, ray, index, tile, edges };
         Self { candidate, shift, fits, nearness_q16, band, spread, found }
@@ -186,11 +185,12 @@ impl<'a, 'h, 'b, P: Profile, R: Fn([u16; 2]) -> Option<RayOf<P>>> Drawing<'a, 'h
         let Linear { first: value, right, down } = self.nearness_q16;
         let mut value = value.wrapping_add(first * right).wrapping_add(y * down);
         let (place, count) = ([first as usize, y as usize], (last + 1 - first) as usize);
-        let hits = self.found.hits.get_mut(place[1] * self.found.stride + place[0]..).unwrap_or_default();
+        let start = place[1] * self.found.stride + place[0];
+        let hits = self.found.hits.get_mut(start..).and_then(|hits| hits.get_mut(..count));
         let start = (place[1] << SIDE_BITS | place[0]) % PIXELS;
-        let places = hits.iter_mut().zip(&mut self.found.nearness[start..]).take(count);
+        let (Some(hits), Some(olds)) = (hits, self.found.nearness[start..].get_mut(..count)) else { return last + 1 };
         let (spread, index) = (self.spread, self.candidate.index);
-        for (done, (hit, old)) in places.enumerate() {
+        for (done, (hit, old)) in hits.iter_mut().zip(olds).enumerate() {
             let nearness = value >> 16;
             let nearer = nearness - i32::from(*old);
             if nearer > spread {

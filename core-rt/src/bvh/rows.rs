@@ -26,6 +26,10 @@ const SLOPE_BITS: u32 = 15;
 /// By what a column in the tile may be off.
 const OFF: i32 = 32;
 
+/// By how much farther inwards than by its margin a triangle certainly is: what a column was moved out by, what it may be off,
+/// and the margin.
+const INWARDS: i32 = 2 * OFF + 10;
+
 /// The pixels of a row that a triangle may cover, and between which ones it certainly does.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row {
@@ -64,7 +68,7 @@ impl Crossing {
             (product + half) >> shift
         };
         // In fewer bits: below 2^22, and cut by less than 2^6 2^12 / 2^15 = 8 units.
-        let margin = ((((edge.uncertain + 2 * grown) >> 6) as u32 * m) >> 10 >> shift) as i32 + 2 * OFF + 10;
+        let margin = ((((edge.uncertain + 2 * grown) >> 6) as u32 * m) >> 10 >> shift) as i32;
         Self { column: columns(first + grown) + OFF, step: columns(down), margin }
     }
 }
@@ -148,6 +152,6 @@ impl Rows {
             return None;
         }
         let width = (b - self.margins[0]).min(c - self.margins[1]);
-        Some(Row { first, last, certain: turned([up(end - width), down(end - self.margin)]) })
+        Some(Row { first, last, certain: turned([up(end - width + INWARDS), down(end - self.margin - INWARDS)]) })
     }
 }

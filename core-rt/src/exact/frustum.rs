@@ -22,7 +22,7 @@ use super::width::{Distance, Wide, Width};
 use super::{Exact, Ray};
 use crate::camera::Camera;
 use crate::kernel::Vertices;
-use crate::num::{Triple, Word, cross, mantissa, narrow_dot, reciprocal};
+use crate::num::{Triple, Word, cross, mantissa, narrow_dot, reciprocal, sub};
 use crate::render::Tile;
 use crate::tile::{Beam, Edge, Edges, Footprint, Linear, SIDE};
 
@@ -291,10 +291,14 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
 
     #[inline(always)]
     fn footprint(&self, vertices: &Vertices, edges: &mut Edges) -> Footprint {
-        let [p, q, r] = vertices.map(|vertex| {
-            let from = |axis: usize| W::Word::from_i32(vertex[axis]) - self.origin[axis];
-            [from(0), from(1), from(2)]
-        });
+        let [p, q, r] = vertices.map(|vertex| vertex.map(W::Word::from_i32));
+        let from_origin = sub(p, self.origin);
+        // By edges: a record has these.
+        let moved = |to: Triple<W::Word>| {
+            let e = sub(to, p);
+            [from_origin[0] + e[0], from_origin[1] + e[1], from_origin[2] + e[2]]
+        };
+        let [p, q, r] = [from_origin, moved(q), moved(r)];
         let [a, b, c] = [cross(p, q), cross(q, r), cross(r, p)];
         let sum = |axis: usize| a[axis].wrapping_sub(-b[axis]).wrapping_sub(-c[axis]);
         let normal = [sum(0), sum(1), sum(2)];
