@@ -131,7 +131,7 @@ impl<'a, 'h, 'b, P: Profile, R: Fn([u16; 2]) -> Option<RayOf<P>>> Drawing<'a, 'h
     }
 
     /// Goes through the tile by rows.
-    #[inline(never)]
+    #[inline(always)]
     pub(super) fn draw(mut self) {
         let Candidate { edges, tile, .. } = self.candidate;
         let (last, height) = (i32::from(tile.width) - 1, i32::from(tile.height));

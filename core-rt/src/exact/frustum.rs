@@ -98,8 +98,8 @@ pub struct Frustum<W: Width> {
     is_down: bool,
     /// The largest component along it.
     largest: i32,
-    /// The origin that depths of low planes and high ones are counted from.
-    depth_origin: [i32; 2],
+    /// The origin that depths of near planes are counted from.
+    depth_origin: i32,
     /// Of the two other axes, what high and low planes are tested with.
     sides: [[Side; 2]; 2],
 }
@@ -236,7 +236,7 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
             axis,
             is_down,
             largest: (largest >> 2) + 2 + (spread >> fraction_bits),
-            depth_origin: [up[0], below[0]],
+            depth_origin: if is_down { below[0] } else { up[0] },
             sides,
         })
     }
@@ -266,10 +266,10 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
     fn enter<const AXIS: usize>(&self, node: &W::Node, child: usize, limit: Distance<W>) -> Option<Distance<W>> {
         let [low, high] = &node.planes()[child];
         let (u_low, u_high) = (Self::coarse(low[AXIS]), Self::coarse(high[AXIS]));
-        let (low_depth, high_depth) = (u_low - self.depth_origin[0], u_high - self.depth_origin[1]);
-        let (near, far) = if self.is_down { (-high_depth, -low_depth) } else { (low_depth, high_depth) };
+        let near = if self.is_down { self.depth_origin - u_high } else { u_low - self.depth_origin };
         let near = <Distance<W> as Word>::from_i32(near);
-        if far <= 0 || near > limit {
+        // Behind the eye there is nothing between the planes.
+        if near > limit {
             return None;
         }
         for which in [0, 1] {
