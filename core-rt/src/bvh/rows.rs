@@ -6,29 +6,27 @@
 //! off and for where its function is not certain: pixels in that are asked by themselves.
 //!
 //! **Margins.** Let r be an edge function's step to the right, d that down, and c(y) = -(first + y d) / r. Where |r| is less than
-//! |d| / 2^10 or than 2^15 it is taken larger, and the function with it in all columns of the tile but the one that it decreases
-//! towards least: columns are let in by that, and the margin has the most that it grew by. The reciprocal is low by 2^-14 or high
-//! by 2^-15 of it, for all rows alike: in the tile a column is off by less than 16 / 2^14, which is 4 of its unit. The first one is
-//! cut to a unit and rounded, and so is each of 15 steps, by less than 3/2. That is less than [`OFF`].
+//! 2^15 it is taken larger, by g / 15, and g is added: the function grows, in no column of the tile by more than 2 g, and columns are
+//! let in by that. The reciprocal is low by 2^-14 or high by 2^-15 of it, for first columns, steps and margins alike: in the tile
+//! a column is off by less than 16 / 2^14, which is 4 of its unit. The first one is cut to a unit and rounded, and so is each of 15
+//! steps, by less than 3/2 each. That is less than [`OFF`].
 
 use crate::num::{byte_length, mantissa};
 use crate::tile::{Edge, Edges, Linear, SIDE};
 
-/// Fractional bits of a column.
+/// Fractional bits of a column: a value below 2^31, times 2^12, by a step of at least 2^15 is below 2^28. Functions have steps down
+/// below 2^25, and 15 of theirs are less.
 const COLUMN_BITS: u32 = 12;
 
-/// A step from row to row is at most about 2 to this, columns.
-const STEEP_BITS: u32 = 10;
-
-/// The least step of an edge function from column to column: columns are below 2^31 2^12 / 2^15 = 2^28 then.
+/// The least step of an edge function from column to column is 2 to this.
 const SLOPE_BITS: u32 = 15;
 
 /// By what a column in the tile may be off.
 const OFF: i32 = 32;
 
-/// By how much farther inwards than by its margin a triangle certainly is: what a column was moved out by, what it may be off,
-/// and the margin.
-const INWARDS: i32 = 2 * OFF + 10;
+/// By how much farther inwards than its margin a triangle certainly is: what a column was moved out by, what it may be off, and
+/// what the margin was cut by.
+const INWARDS: i32 = 2 * OFF + 6;
 
 /// The pixels of a row that a triangle may cover, and between which ones it certainly does.
 #[derive(Clone, Copy, Debug)]
@@ -44,7 +42,7 @@ struct Crossing {
     column: i32,
     /// What is added from row to row.
     step: i32,
-    /// Farther inwards by this it certainly is.
+    /// Farther inwards by this, and [`INWARDS`], it certainly is.
     margin: i32,
 }
 
@@ -54,9 +52,9 @@ impl Crossing {
         const LAST: i32 = SIDE as i32 - 1;
         let Linear { first, right, down } = edge.line;
         let slope = right.unsigned_abs();
-        let taken = slope.max(down.unsigned_abs() >> STEEP_BITS).max(1 << SLOPE_BITS);
+        let taken = slope.max(1 << SLOPE_BITS);
         let grown = LAST * (taken - slope) as i32;
-        // Below 2^16, and not 0.
+        // Below 2^10, and not 0.
         let high = taken >> SLOPE_BITS;
         let over = if high >> 8 == 0 { byte_length(high) } else { byte_length(high >> 8) + 8 } - 1;
         let m = mantissa(taken >> over);
@@ -67,8 +65,8 @@ impl Crossing {
             let product = (value >> 16) * m as i32 + (((value & 0xffff) as u32 * m) >> 16) as i32;
             (product + half) >> shift
         };
-        // In fewer bits: below 2^22, and cut by less than 2^6 2^12 / 2^15 = 8 units.
-        let margin = ((((edge.uncertain + 2 * grown) >> 6) as u32 * m) >> 10 >> shift) as i32;
+        // Both are below 2^20, so a product is below 2^32; cut by less than 2^5 2^12 / 2^15 + 2 = 6 units.
+        let margin = ((((edge.uncertain + 2 * grown) >> 5) as u32 * m) >> 11 >> shift) as i32;
         Self { column: columns(first + grown) + OFF, step: columns(down), margin }
     }
 }
