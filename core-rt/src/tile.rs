@@ -8,7 +8,7 @@
 //! certain within that bound, the ray of the pixel is tested by itself: the hits are those of single rays, all of them.
 
 use crate::camera::Camera;
-use crate::kernel::{Kernel, Vertices};
+use crate::kernel::{Bounds, Kernel, Vertices};
 use crate::num::Triple;
 use crate::render::Tile;
 
@@ -34,6 +34,8 @@ pub trait Beam<K: Kernel>: Sized {
     fn enter<const AXIS: usize>(&self, node: &K::Node, child: usize, limit: K::Distance) -> Option<K::Distance>;
     /// What of the tile a triangle covers.
     fn footprint(&self, vertices: &Vertices, edges: &mut Edges) -> Footprint;
+    /// Functions that are not negative, all of them, wherever a ray may meet a box; `None` where that may be anywhere.
+    fn around(&self, bounds: &Bounds) -> Option<[Linear; 4]>;
     /// Whether the ray of a pixel of the tile hits the triangle of a footprint, where that is certain by the ray's own direction.
     fn meets(ray: &K::Ray, edges: &Edges) -> Option<bool>;
 }
@@ -64,6 +66,10 @@ impl<K: Kernel> Beam<K> for NoBeam {
     }
 
     fn footprint(&self, _: &Vertices, _: &mut Edges) -> Footprint {
+        match *self {}
+    }
+
+    fn around(&self, _: &Bounds) -> Option<[Linear; 4]> {
         match *self {}
     }
 

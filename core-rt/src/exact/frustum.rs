@@ -21,7 +21,7 @@ use super::boxes::BoxNode;
 use super::width::{Distance, Wide, Width};
 use super::{Exact, Ray};
 use crate::camera::Camera;
-use crate::kernel::Vertices;
+use crate::kernel::{Bounds, Vertices};
 use crate::num::{Triple, Word, cross, mantissa, narrow_dot, reciprocal, sub};
 use crate::render::Tile;
 use crate::tile::{Beam, Edge, Edges, Footprint, Linear, SIDE};
@@ -333,6 +333,30 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
         edges.shift = nearness_shift as u32;
         edges.band = self.off(towards) + 6 * self.length + LINEAR_ERROR;
         Footprint::Edges
+    }
+
+    /// With u the axis of depth and v another, all of the box is at p_v <= (b / a) |p_u|, b being its highest v and a the nearest u,
+    /// or for b < 0 the farthest: then b |D_u| - a D_v is not negative where a ray meets it. Likewise below.
+    fn around(&self, bounds: &Bounds) -> Option<[Linear; 4]> {
+        let from = |axis: usize, place: i32| W::Word::from_i32(place) - self.origin[axis];
+        let low = |axis: usize| (from(axis, bounds.low[axis]) >> Self::COARSE_BITS).low_i32();
+        let high = |axis: usize| -((-from(axis, bounds.high[axis])) >> Self::COARSE_BITS).low_i32();
+        let u = self.axis;
+        let (near, far) = if self.is_down { (-high(u), -low(u)) } else { (low(u), high(u)) };
+        if near <= 0 {
+            return None;
+        }
+        let line = |v: usize, slope: i32, depth: i32| {
+            let mut g = [0; 3];
+            (g[u], g[v]) = (if self.is_down { -slope } else { slope }, depth);
+            let g = g.map(|c| rounded(c, BOX_BITS.saturating_sub(self.vector_bits)));
+            let line = self.linear(g);
+            Linear { first: line.first + self.off(g) + (self.length >> 1) + LINEAR_ERROR, ..line }
+        };
+        let above = |v: usize| line(v, high(v), -if high(v) < 0 { far } else { near });
+        let below = |v: usize| line(v, -low(v), if low(v) > 0 { far } else { near });
+        let [v, w] = [(u + 1) % 3, (u + 2) % 3];
+        Some([above(v), below(v), above(w), below(w)])
     }
 
     /// A vector is within 1/2 along each axis, or without error: its product with a direction is off by at most half the sum of
