@@ -5,7 +5,8 @@
 //! rasteriser does it: edge functions and the inverse of the depth are linear in the pixel, and are stepped by addition
 //! (Pineda, "A Parallel Algorithm for Polygon Rasterization", 1988; Reshetov, Soupikov & Hurley, "Multi-Level Ray Tracing
 //! Algorithm", 2005). Every stepped value has a stated bound on its error. Where a sign, or which of two hits is nearer, is not
-//! certain within that bound, the ray of the pixel is tested by itself: the hits are those of single rays, all of them.
+//! certain within that bound, the ray of the pixel is tested by itself: the hits are those of single rays, all of them. Of a sphere
+//! rays are tested wherever its box may be seen.
 
 use crate::camera::Camera;
 use crate::kernel::{Bounds, Kernel, Vertices};

@@ -8,10 +8,14 @@ use super::drawing::{Drawing, Found, Nearnesses, UNKNOWN};
 use super::{Bvh, Child, DistanceOf, Intersect, RayOf, Stack, waiting};
 use crate::camera::Camera;
 use crate::kernel::{Kernel, NONE};
-use crate::profile::{Need, Prefer, Profile};
+use crate::profile::{Prefer, Profile};
 use crate::render::Tile;
 use crate::stats::Stats;
 use crate::tile::{Beam, Edges, Footprint, Linear, SIDE};
+
+/// Leaves of spheres that wait until all triangles of a tile are where they are; others are put at once, and rays asked of what is
+/// found after them.
+const ASIDE: usize = 8;
 
 pub(super) type BeamOf<P> = <<P as Profile>::Kernel as Kernel>::Beam;
 
@@ -72,10 +76,15 @@ impl<P: Profile> Bvh<'_, P> {
         let mut edges = Edges::default();
         let mut limit = beam.reach();
         let mut next = Some(self.root);
+        // Spheres are put last: how near they are is known to rays alone, and triangles are drawn without asking these.
+        let mut aside = heapless::Vec::<u32, ASIDE>::new();
         stack.clear();
         while let Some(leaf) = next.and_then(|child| self.entered(beam, child, limit, stack, stats)) {
             let Child::Leaf { first, count } = Child::unpack(leaf.get()) else { return };
             // No vertices are those of a sphere.
+            if self.sphere(first).is_some() && aside.push(leaf.get()).is_err() {
+                self.put_spheres(beam, ray, tile, leaf.get(), &mut found, stats);
+            }
             for index in first..first + count {
                 let vertices = self.triangles.vertices(index);
                 let Some(vertices) = &vertices else { continue };
@@ -91,37 +100,29 @@ impl<P: Profile> Bvh<'_, P> {
             }
             next = waiting::<P::Kernel>(stack, limit);
         }
-        if P::NEEDS.has(Need::Spheres) && !self.spheres.is_empty() {
-            self.spheres_together(beam, ray, tile, limit, &mut found, stack, stats);
+        for &leaf in &aside {
+            self.put_spheres(beam, ray, tile, leaf, &mut found, stats);
         }
     }
 
-    /// Puts spheres where they are the nearest, when all triangles are where they are: by testing every ray of a tile that may
-    /// meet a sphere's box.
+    /// Puts a leaf's spheres where they are the nearest, by testing rays that may meet their boxes.
     #[inline(never)]
-    #[expect(clippy::too_many_arguments, reason = "the storage of a tile has three parts")]
-    fn spheres_together(
+    fn put_spheres(
         &self,
         beam: &BeamOf<P>,
         ray: &impl Fn([u16; 2]) -> Option<RayOf<P>>,
         tile: Tile,
-        limit: DistanceOf<P>,
+        leaf: u32,
         found: &mut Found<'_>,
-        stack: &mut Stack<P::Kernel>,
         stats: &mut impl Stats,
     ) {
-        let mut next = Some(self.root);
-        stack.clear();
-        while let Some(leaf) = next.and_then(|child| self.entered(beam, child, limit, stack, stats)) {
-            let Child::Leaf { first, count } = Child::unpack(leaf.get()) else { return };
-            for index in first..first + count {
-                let Some(sphere) = self.sphere(index) else { continue };
-                stats.sphere();
-                // Without: anywhere.
-                let around = beam.around(&P::Kernel::ball(sphere).bounds()).unwrap_or_default();
-                self.try_where(&around, ray, tile, index, found);
-            }
-            next = waiting::<P::Kernel>(stack, limit);
+        let Child::Leaf { first, count } = Child::unpack(leaf) else { return };
+        for index in first..first + count {
+            let Some(sphere) = self.sphere(index) else { continue };
+            stats.sphere();
+            // Functions that are 0 leave out nothing.
+            let around = beam.around(&P::Kernel::ball(sphere).bounds()).unwrap_or_default();
+            self.try_where(&around, ray, tile, index, found);
         }
     }
 
