@@ -132,8 +132,8 @@ pub struct Depth<W: Width> {
     pub numerator: W::Wide,
     /// The denominator of t.
     pub denominator: W::Wide,
-    /// t within [`Width::SLACK`].
-    pub(super) t: W::Word,
+    /// t within [`Width::SLACK`], with [`Width::T_BITS`].
+    pub t: W::Word,
 }
 
 /// The hit, if there is one with 0 < t within the ray's reach.

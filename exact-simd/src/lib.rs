@@ -1,0 +1,33 @@
+//! x
+mod collapse;
+mod exact;
+mod tree;
+mod walk;
+
+use core_rt::bvh::Bvh;
+use core_rt::exact::{Exact29, Ray, Width29};
+use core_rt::profile::Profile;
+use core_rt::stats::Stats;
+
+/// T.
+#[derive(Clone, Debug)]
+pub struct Tree(tree::Wide<i32, { exact::ROWS }>);
+
+impl Tree {
+    /// N.
+    pub fn new<P: Profile<Kernel = Exact29>>(bvh: &Bvh<'_, P>) -> Option<Self> {
+        if !std::arch::is_x86_feature_detected!("avx2") {
+            return None;
+        }
+        let (tree, _waiting) = tree::Wide::new(bvh);
+        Some(Self(tree))
+    }
+    /// C.
+    pub fn closest<P: Profile<Kernel = Exact29>>(&self, bvh: &Bvh<'_, P>, ray: &Ray<Width29>, stats: &mut impl Stats) -> u32 {
+        unsafe { exact::closest(&self.0, bvh, ray, stats) }
+    }
+    /// A.
+    pub fn any<P: Profile<Kernel = Exact29>>(&self, bvh: &Bvh<'_, P>, ray: &Ray<Width29>, stats: &mut impl Stats, blocks: impl FnMut(u32) -> bool) -> bool {
+        unsafe { exact::any(&self.0, bvh, ray, stats, blocks) }
+    }
+}
