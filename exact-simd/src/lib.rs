@@ -1,6 +1,8 @@
 //! x
 mod collapse;
-mod exact;
+mod exact29;
+mod float32;
+mod search;
 mod tree;
 mod walk;
 
@@ -11,7 +13,7 @@ use core_rt::stats::Stats;
 
 /// T.
 #[derive(Clone, Debug)]
-pub struct Tree(tree::Wide<i32, { exact::ROWS }>);
+pub struct Tree(tree::Wide<i32, { exact29::ROWS }>);
 
 impl Tree {
     /// N.
@@ -24,10 +26,28 @@ impl Tree {
     }
     /// C.
     pub fn closest<P: Profile<Kernel = Exact29>>(&self, bvh: &Bvh<'_, P>, ray: &Ray<Width29>, stats: &mut impl Stats) -> u32 {
-        unsafe { exact::closest(&self.0, bvh, ray, stats) }
+        unsafe { exact29::closest((&self.0, bvh), ray, stats) }
     }
     /// A.
     pub fn any<P: Profile<Kernel = Exact29>>(&self, bvh: &Bvh<'_, P>, ray: &Ray<Width29>, stats: &mut impl Stats, blocks: impl FnMut(u32) -> bool) -> bool {
-        unsafe { exact::any(&self.0, bvh, ray, stats, blocks) }
+        unsafe { exact29::any((&self.0, bvh), ray, stats, blocks) }
+    }
+}
+
+/// F.
+#[derive(Clone, Debug)]
+pub struct Tree32(tree::Wide<f32, { float32::ROWS }>);
+
+impl Tree32 {
+    /// N.
+    pub fn new<P: Profile<Kernel = float_rt::Float32>>(bvh: &Bvh<'_, P>) -> Option<Self> {
+        if !std::arch::is_x86_feature_detected!("avx2") {
+            return None;
+        }
+        Some(Self(tree::Wide::new(bvh).0))
+    }
+    /// C.
+    pub fn closest<P: Profile<Kernel = float_rt::Float32>>(&self, bvh: &Bvh<'_, P>, ray: &float_rt::Ray<f32>, stats: &mut impl Stats) -> u32 {
+        unsafe { float32::closest((&self.0, bvh), ray, stats) }
     }
 }

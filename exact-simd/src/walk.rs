@@ -21,14 +21,13 @@ pub(crate) struct Entered<'n, T> {
 /// Visits leaves until `visit` returns no limit any more, or nothing waits.
 #[target_feature(enable = "avx2")]
 #[inline]
-pub(crate) fn walk<'n, T: Copy + PartialOrd>(
+pub(crate) fn walk<'n, T: Copy + Default + PartialOrd>(
     mut limit: T,
-    start: T,
     mut enter: impl FnMut(u32, T) -> Option<Entered<'n, T>>,
     mut visit: impl FnMut(Word, T) -> Option<T>,
 ) {
     let mut stack = Vec::<(u32, T), WAITING_MAX>::new();
-    let mut next = Some((0, start));
+    let mut next = Some((0, T::default()));
     while let Some((word, entry)) = next.take().or_else(|| stack.pop()) {
         if entry > limit {
             continue;

@@ -1,17 +1,18 @@
 //! `exact29` in lanes of 32 bits.
+
 use core::arch::x86_64::*;
 
 use core_rt::bvh::Bvh;
 use core_rt::exact::{Depth, Ray, Reciprocal, Reciprocal29, Exact29, Width, Width29};
-use core_rt::kernel::{Kernel, NONE, Vertices};
+use core_rt::kernel::{Kernel, Vertices};
 use core_rt::num::{cross, sub};
 use core_rt::profile::Profile;
 use core_rt::stats::Stats;
-use std::cmp::Ordering;
 
 use crate::collapse::WIDTH;
-use crate::tree::{Layout, Node, Packet, Row, Wide, Word};
-use crate::walk::{Entered, walk};
+use crate::tree::{Layout, Node, Packet, Row, Wide};
+use crate::search::{Found, Nearest, search};
+use crate::walk::Entered;
 
 const T_BITS: u32 = 21;
 const SLACK: i32 = 2;
@@ -42,7 +43,7 @@ impl Layout<ROWS> for i32 {
     }
 
     fn lane(row: usize, lane: usize) -> usize {
-        if row < 3 { lane } else { PERMUTED[lane] }
+        if row < 3 || row >= 9 { lane } else { PERMUTED[lane] }
     }
 }
 
@@ -92,13 +93,21 @@ fn bits(mask: __m256i) -> u32 {
     _mm256_movemask_ps(_mm256_castsi256_ps(mask)) as u32
 }
 
+#[inline]
 fn factor(d: i64) -> i64 {
     let m = ((1u64 << (32 + T_BITS)) / d.unsigned_abs().max(1)) as i64;
     if d < 0 { -m } else { m }
 }
 
+#[inline]
 fn is_down(d: i64) -> usize {
     usize::from(d < 0)
+}
+
+#[inline]
+fn is_steep(ray: &Ray<Width29>) -> bool {
+    let [x, y, z] = ray.direction;
+    x.unsigned_abs().min(y.unsigned_abs()).min(z.unsigned_abs()) < 1 << STEEP_BITS
 }
 
 fn meet<P: Profile<Kernel = Exact29>>(bvh: &Bvh<'_, P>, ray: &Ray<Width29>, index: u32) -> Option<Depth<Width29>> {
@@ -112,12 +121,11 @@ impl Lanes {
         let splat = |[x, y, z]: [i64; 3]| {
             [_mm256_set1_epi32(x as i32), _mm256_set1_epi32(y as i32), _mm256_set1_epi32(z as i32)]
         };
-        let factor = ray.direction.map(factor);
         Self {
             origin: splat(ray.origin),
             direction: splat(ray.direction),
-            factor: splat(factor),
-            is_down: ray.direction.map(is_down),
+            factor: splat([factor(ray.direction[0]), factor(ray.direction[1]), factor(ray.direction[2])]),
+            is_down: [is_down(ray.direction[0]), is_down(ray.direction[1]), is_down(ray.direction[2])],
         }
     }
 
@@ -140,7 +148,7 @@ impl Lanes {
     /// The lanes of triangles that may be met by the line.
     #[target_feature(enable = "avx2")]
     #[inline]
-    fn candidates(&self, packet: &Packet<i32, ROWS>) -> u32 {
+    fn candidates(&self, packet: &Packet<i32, ROWS>, limit: i32) -> u32 {
         let row = |row: usize| load(&packet.rows[row]);
         let [x, y, z] = self.direction;
         let from = |axis: usize| _mm256_sub_epi32(self.origin[axis], row(axis));
@@ -165,14 +173,28 @@ impl Lanes {
         };
         let minus_v = dot(3, &r, &r_odd);
         let u = dot(6, &r, &r_odd);
-        let minus_det = dot(9, &self.direction, &self.direction);
+        let minus_det = _mm256_shuffle_epi32::<0xd8>(dot(9, &self.direction, &self.direction));
         let v = _mm256_sub_epi32(_mm256_setzero_si256(), minus_v);
         let w = _mm256_sub_epi32(_mm256_sub_epi32(minus_v, u), minus_det);
         let least = _mm256_min_epi32(_mm256_min_epi32(u, v), w);
         let most = _mm256_max_epi32(_mm256_max_epi32(u, v), w);
         let has_negative = _mm256_cmpgt_epi32(_mm256_set1_epi32(1 - ERROR), least);
         let has_positive = _mm256_cmpgt_epi32(most, _mm256_set1_epi32(ERROR - 1));
-        !bits(_mm256_and_si256(has_negative, has_positive)) & ((1 << packet.count) - 1)
+        let mask = !bits(_mm256_and_si256(has_negative, has_positive)) & ((1 << packet.count) - 1);
+        if mask == 0 {
+            return 0;
+        }
+        // Of those that remain, t: S . n by the sign of the determinant.
+        let minus_tn = _mm256_shuffle_epi32::<0xd8>(dot(9, &s, &t));
+        let _ = limit;
+        let det = _mm256_abs_epi32(minus_det);
+        let tn = _mm256_sign_epi32(minus_tn, minus_det);
+        let tn = _mm256_sub_epi32(_mm256_setzero_si256(), tn);
+        let certain = _mm256_cmpgt_epi32(det, _mm256_set1_epi32(2));
+        let behind = _mm256_cmpgt_epi32(_mm256_set1_epi32(-1), tn);
+        let most = _mm256_shuffle_epi32::<0xd8>(high_product(_mm256_add_epi32(det, _mm256_set1_epi32(3)), _mm256_set1_epi32((limit + 1) << (31 - T_BITS))));
+        let beyond = _mm256_cmpgt_epi32(tn, _mm256_add_epi32(_mm256_add_epi32(most, most), _mm256_set1_epi32(3)));
+        mask & !bits(_mm256_and_si256(certain, _mm256_or_si256(behind, beyond)))
     }
 }
 
@@ -203,115 +225,73 @@ fn enter_steep<'n>(
     entered
 }
 
-/// Visits what may be hit.
+/// The limit that a ray begins with: no hit is beyond it.
+fn reach(ray: &Ray<Width29>) -> i32 {
+    // t is at most 1/2; that of a segment is below 2^reach, and where that is below the unit, it is 0 as the lanes count.
+    let bits = ray.reach.map_or(T_BITS as i32 - 1, |reach| (T_BITS as i32 + reach).clamp(0, T_BITS as i32 - 1));
+    1 << bits
+}
+
 #[target_feature(enable = "avx2")]
 #[inline]
 fn hits<P: Profile<Kernel = Exact29>>(
-    tree: &Wide<i32, ROWS>,
-    bvh: &Bvh<'_, P>,
+    of: (&Wide<i32, ROWS>, &Bvh<'_, P>),
     ray: &Ray<Width29>,
     stats: &mut impl Stats,
     mut visit: impl FnMut(u32, Depth<Width29>) -> Option<i32>,
 ) {
     let lanes = Lanes::new(ray);
-    let reach = match ray.reach {
-        None => 1 << (T_BITS - 1),
-        Some(reach) => 1i64.checked_shl((T_BITS as i32 + reach).max(0) as u32).unwrap_or(i64::MAX).min(1 << (T_BITS - 1)) as i32,
-    };
-    let is_steep = ray.direction.iter().any(|d| d.unsigned_abs() < 1 << STEEP_BITS);
-    let reciprocals = if is_steep { ray.direction.map(Reciprocal29::new) } else { [Reciprocal29::new(1); 3] };
-    let mut boxes = 0;
-    let mut triangles = 0;
-    walk(
-        reach,
-        0,
-        |index, limit| {
-            let node = tree.nodes.get(index as usize)?;
-            boxes += node.count;
-            Some(if is_steep { enter_steep(&ray.origin, &reciprocals, node, limit) } else { lanes.enter(node, limit) })
-        },
-        |leaf, mut limit| {
-            match leaf {
-                Word::Node(_) => {}
-                Word::Packets { first, count } => {
-                    for packet in tree.packets.get(first as usize..(first + count) as usize).unwrap_or_default() {
-                        triangles += packet.count;
-                        let mut mask = lanes.candidates(packet);
-                        while mask != 0 {
-                            let index = packet.first + mask.trailing_zeros();
-                            mask &= mask - 1;
-                            if index == ray.skip {
-                                continue;
-                            }
-                            if let Some(depth) = meet(bvh, ray, index) {
-                                limit = visit(index, depth)?;
-                            }
-                        }
-                    }
-                }
-                Word::Spheres(place) => {
-                    let [first, count] = tree.spheres.get(place as usize).copied().unwrap_or_default();
-                    for index in first..first + count {
-                        stats.sphere();
-                        let hit = bvh.sphere(index).and_then(|s| Exact29::intersect_sphere(ray, s, index == ray.skip));
-                        if let Some(depth) = hit {
-                            limit = visit(index, depth)?;
-                        }
-                    }
+    let test = |found: Found<'_, i32, ROWS, Depth<Width29>>| match found {
+        Found::Sphere(index, depth) => visit(index, depth),
+        Found::Packet(packet, mut limit) => {
+            let mut mask = lanes.candidates(packet, limit);
+            while mask != 0 {
+                let index = packet.first + mask.trailing_zeros();
+                mask &= mask - 1;
+                if index != ray.skip
+                    && let Some(depth) = meet(of.1, ray, index)
+                {
+                    limit = visit(index, depth)?;
                 }
             }
             Some(limit)
-        },
-    );
-    stats.boxes(boxes);
-    for _ in 0..triangles {
-        stats.triangle();
+        }
+    };
+    if is_steep(ray) {
+        let reciprocals = ray.direction.map(Reciprocal29::new);
+        search(of, ray, reach(ray), stats, |node, limit| enter_steep(&ray.origin, &reciprocals, node, limit), test);
+    } else {
+        search(of, ray, reach(ray), stats, |node, limit| lanes.enter(node, limit), test);
     }
 }
 
 #[target_feature(enable = "avx2")]
 pub(crate) fn closest<P: Profile<Kernel = Exact29>>(
-    tree: &Wide<i32, ROWS>,
-    bvh: &Bvh<'_, P>,
+    of: (&Wide<i32, ROWS>, &Bvh<'_, P>),
     ray: &Ray<Width29>,
     stats: &mut impl Stats,
 ) -> u32 {
-    let mut best: Option<(u32, Depth<Width29>)> = None;
-    let mut limit = 1 << (T_BITS - 1);
-    if let Some(reach) = ray.reach {
-        limit = 1i64.checked_shl((T_BITS as i32 + reach).max(0) as u32).unwrap_or(i64::MAX).min(1 << (T_BITS - 1)) as i32;
-    }
-    hits(tree, bvh, ray, stats, |index, depth| {
-        let nearer = best.as_ref().is_none_or(|(hit, best)| match Exact29::order(&depth, best) {
-            Ordering::Less => true,
-            Ordering::Equal => bvh.id(index) < bvh.id(*hit),
-            Ordering::Greater => false,
-        });
-        if nearer {
+    let (mut nearest, mut limit) = (Nearest::NONE, reach(ray));
+    hits(of, ray, stats, |index, depth| {
+        if nearest.take(of.1, index, depth) {
             limit = ((depth.t + Width29::SLACK) >> (Width29::T_BITS - T_BITS)) as i32;
-            best = Some((index, depth));
         }
         Some(limit)
     });
-    best.map_or(NONE, |(index, _)| index)
+    nearest.hit()
 }
 
 #[target_feature(enable = "avx2")]
 pub(crate) fn any<P: Profile<Kernel = Exact29>>(
-    tree: &Wide<i32, ROWS>,
-    bvh: &Bvh<'_, P>,
+    of: (&Wide<i32, ROWS>, &Bvh<'_, P>),
     ray: &Ray<Width29>,
     stats: &mut impl Stats,
     mut blocks: impl FnMut(u32) -> bool,
 ) -> bool {
-    let mut limit = 1 << (T_BITS - 1);
-    if let Some(reach) = ray.reach {
-        limit = 1i64.checked_shl((T_BITS as i32 + reach).max(0) as u32).unwrap_or(i64::MAX).min(1 << (T_BITS - 1)) as i32;
-    }
-    let mut blocked = false;
-    hits(tree, bvh, ray, stats, |index, _| {
-        blocked = blocks(index);
-        (!blocked).then_some(limit)
+    let (mut is_blocked, limit) = (false, reach(ray));
+    hits(of, ray, stats, |index, _| {
+        is_blocked = blocks(index);
+        (!is_blocked).then_some(limit)
     });
-    blocked
+    is_blocked
 }
