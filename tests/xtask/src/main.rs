@@ -22,6 +22,7 @@ usage: cargo xtask VERB
   test [--long]        runs every check, after installing what they need
   fuzz [--seconds N]   fuzzes the blob and the importers, N seconds each (60)
   studies [--quick]    measures the 2009 report's claims and writes docs/STUDIES.md; quickly, and smaller, to out/studies
+  planes               measures the tracer of 1994 and writes docs/PLANES.md
   bless                renews the goldens and the figures of documents, and shows which changed
   report               measures the gallery and writes docs/report, and the README's part of it
   demo-scene           writes scenes/demo anew
@@ -47,6 +48,7 @@ enum Verb {
     Test { long: bool },
     Fuzz { seconds: u32 },
     Studies { quick: bool },
+    Planes,
     Bless,
     Report,
     DemoScene,
@@ -63,6 +65,7 @@ impl Verb {
             ["fuzz", "--seconds", seconds] => Some(Self::Fuzz { seconds: seconds.parse().ok()? }),
             ["studies"] => Some(Self::Studies { quick: false }),
             ["studies", "--quick"] => Some(Self::Studies { quick: true }),
+            ["planes"] => Some(Self::Planes),
             ["bless"] => Some(Self::Bless),
             ["report"] => Some(Self::Report),
             ["demo-scene"] => Some(Self::DemoScene),
@@ -109,6 +112,10 @@ fn perform(verb: Verb) -> Result<(), String> {
             let option = if quick { " -- --quick" } else { "" };
             let line = format!("cargo run --quiet --release -p tests --bin studies{option}");
             run(&[Step::new("studies", Task::new(&line))]).map(drop)
+        }
+        Verb::Planes => {
+            let line = "cargo run --quiet --release -p tests --bin studies -- --planes";
+            run(&[Step::new("the tracer of 1994", Task::new(line))]).map(drop)
         }
         Verb::Bless => run(&[
             Step::new(
@@ -171,6 +178,7 @@ mod tests {
         assert_eq!(Verb::parse(&["test"]), Some(Verb::Test { long: false }));
         assert_eq!(Verb::parse(&["test", "--long"]), Some(Verb::Test { long: true }));
         assert_eq!(Verb::parse(&["fuzz", "--seconds", "5"]), Some(Verb::Fuzz { seconds: 5 }));
+        assert_eq!(Verb::parse(&["planes"]), Some(Verb::Planes));
         assert_eq!(Verb::parse(&["report"]), Some(Verb::Report));
         assert_eq!(Verb::parse(&["studies", "--quick"]), Some(Verb::Studies { quick: true }));
         for wrong in [
