@@ -1,53 +1,32 @@
-//! x
-mod collapse;
-mod exact29;
-mod float32;
-mod search;
-mod tree;
-mod walk;
+//! `exact29` on the vector units that the machine turns out to have when it runs: the same hits, bit for bit, eight boxes or
+//! eight triangles at a time.
+//!
+//! The tree of a blob becomes one of eight children a node, and triangles become packets of eight, both in lanes of 32 bits.
+//! Lanes leave out what is certainly missed; whatever they leave is asked of the kernel itself, which decides without error
+//! and orders hits exactly. So lanes need no more than to be conservative, and they are integers as the kernel's are.
+//!
+//! `f32` stands in the same layout, for comparison. A program for any x86-64 has it all and asks the processor, as
+//! `planes-simd` does; on another machine, and for a ray that lanes do not hold, the tree is walked in place.
+#![deny(unsafe_code)]
 
-use core_rt::bvh::Bvh;
-use core_rt::exact::{Exact29, Ray, Width29};
-use core_rt::profile::Profile;
-use core_rt::stats::Stats;
+#[cfg(not(target_arch = "x86_64"))]
+mod absent;
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+mod eights;
 
-/// T.
-#[derive(Clone, Debug)]
-pub struct Tree(tree::Wide<i32, { exact29::ROWS }>);
+#[cfg(not(target_arch = "x86_64"))]
+pub use absent::{Tree, Tree32};
+#[cfg(target_arch = "x86_64")]
+pub use avx2::{Tree, Tree32};
+pub use eights::{ByEights, Eights};
 
-impl Tree {
-    /// N.
-    pub fn new<P: Profile<Kernel = Exact29>>(bvh: &Bvh<'_, P>) -> Option<Self> {
-        if !std::arch::is_x86_feature_detected!("avx2") {
-            return None;
-        }
-        let (tree, _waiting) = tree::Wide::new(bvh);
-        Some(Self(tree))
+/// The vector units that are used on this machine, by name; `None` where there are none.
+#[must_use]
+pub fn unit() -> Option<&'static str> {
+    #[cfg(target_arch = "x86_64")]
+    if std::arch::is_x86_feature_detected!("avx2") {
+        return Some("avx2");
     }
-    /// C.
-    pub fn closest<P: Profile<Kernel = Exact29>>(&self, bvh: &Bvh<'_, P>, ray: &Ray<Width29>, stats: &mut impl Stats) -> u32 {
-        unsafe { exact29::closest((&self.0, bvh), ray, stats) }
-    }
-    /// A.
-    pub fn any<P: Profile<Kernel = Exact29>>(&self, bvh: &Bvh<'_, P>, ray: &Ray<Width29>, stats: &mut impl Stats, blocks: impl FnMut(u32) -> bool) -> bool {
-        unsafe { exact29::any((&self.0, bvh), ray, stats, blocks) }
-    }
-}
-
-/// F.
-#[derive(Clone, Debug)]
-pub struct Tree32(tree::Wide<f32, { float32::ROWS }>);
-
-impl Tree32 {
-    /// N.
-    pub fn new<P: Profile<Kernel = float_rt::Float32>>(bvh: &Bvh<'_, P>) -> Option<Self> {
-        if !std::arch::is_x86_feature_detected!("avx2") {
-            return None;
-        }
-        Some(Self(tree::Wide::new(bvh).0))
-    }
-    /// C.
-    pub fn closest<P: Profile<Kernel = float_rt::Float32>>(&self, bvh: &Bvh<'_, P>, ray: &float_rt::Ray<f32>, stats: &mut impl Stats) -> u32 {
-        unsafe { float32::closest((&self.0, bvh), ray, stats) }
-    }
+    None
 }

@@ -217,7 +217,7 @@ fn decided<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> bool 
 
 /// t, for a line that meets the triangle.
 #[cfg_attr(not(prefer_size), inline(always))]
-fn depth<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> Option<Depth<W>> {
+pub(super) fn depth<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> Option<Depth<W>> {
     let [v0, e1, e2] = parts::<W>(triangle);
     let s = sub(ray.origin, v0);
     let (numerator, denominator) = fraction::<W>(ray, s, e1, e2);

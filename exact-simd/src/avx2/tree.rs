@@ -4,38 +4,54 @@ use core_rt::bvh::Bvh;
 use core_rt::kernel::{Bounds, Vertices};
 use core_rt::profile::Profile;
 
-use crate::collapse::{Below, WIDTH, collapse};
+use super::collapse::{Below, WIDTH, collapse};
 
 /// A number a lane.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
-pub(crate) struct Row<T>(pub(crate) [T; WIDTH]);
+pub(super) struct Row<T>(pub(super) [T; WIDTH]);
 
 /// Eight child boxes.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
-pub(crate) struct Node<T> {
+pub(super) struct Node<T> {
     /// Low and high planes, by axis.
-    pub(crate) planes: [[Row<T>; 2]; 3],
+    pub(super) planes: [[Row<T>; 2]; 3],
     /// Children, in the order of the lanes of what is found of the boxes.
-    pub(crate) children: [u32; WIDTH],
+    pub(super) children: [u32; WIDTH],
     /// How many there are.
-    pub(crate) count: u32,
+    pub(super) count: u32,
 }
 
 /// Eight triangles, each with so many numbers.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
-pub(crate) struct Packet<T, const ROWS: usize> {
-    pub(crate) rows: [Row<T>; ROWS],
+pub(super) struct Packet<T, const ROWS: usize> {
+    pub(super) rows: [Row<T>; ROWS],
     /// The first one's place among the records; the others follow.
-    pub(crate) first: u32,
+    pub(super) first: u32,
     /// How many there are.
-    pub(crate) count: u32,
+    pub(super) count: u32,
+}
+
+impl<T> Node<T> {
+    /// The lanes in which there is a child.
+    #[inline(always)]
+    pub(super) fn used(&self) -> u32 {
+        (1 << self.count) - 1
+    }
+}
+
+impl<T, const ROWS: usize> Packet<T, ROWS> {
+    /// The lanes in which there is a triangle.
+    #[inline(always)]
+    pub(super) fn used(&self) -> u32 {
+        (1 << self.count) - 1
+    }
 }
 
 /// What numbers a layout is of.
-pub(crate) trait Layout<const ROWS: usize>: Copy + Default {
+pub(super) trait Layout<const ROWS: usize>: Copy + Default {
     /// In which lane of a box's rows the child stands that comes out in a lane.
     const LANES: [usize; WIDTH];
     /// A coordinate of a box.
@@ -48,16 +64,15 @@ pub(crate) trait Layout<const ROWS: usize>: Copy + Default {
 
 /// A tree of eight children a node.
 #[derive(Clone, Debug)]
-pub(crate) struct Wide<T, const ROWS: usize> {
-    pub(crate) nodes: Vec<Node<T>>,
-    pub(crate) packets: Vec<Packet<T, ROWS>>,
+pub(super) struct Wide<T, const ROWS: usize> {
+    pub(super) nodes: Vec<Node<T>>,
+    pub(super) packets: Vec<Packet<T, ROWS>>,
     /// Runs of spheres.
-    pub(crate) spheres: Vec<[u32; 2]>,
+    pub(super) spheres: Vec<[u32; 2]>,
 }
 
-/// What a child word says.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Word {
+/// What a child is, packed in a word: bit 31 for a leaf, bit 30 for spheres.
+pub(super) enum Word {
     /// A node.
     Node(u32),
     /// Packets.
@@ -69,7 +84,8 @@ pub(crate) enum Word {
 impl Word {
     const LEAF: u32 = 1 << 31;
     const SPHERES: u32 = 1 << 30;
-    /// Below them a number: of nodes and of packets there are fewer than primitives, which are below 2^25.
+    /// Where the number of packets, 1 to 8, less one is. Below it a number: of nodes, packets and runs of spheres there are no
+    /// more than primitives, which are below 2^25.
     const COUNT_SHIFT: u32 = 26;
 
     fn pack(self) -> u32 {
@@ -81,7 +97,7 @@ impl Word {
     }
 
     #[inline(always)]
-    pub(crate) fn unpack(word: u32) -> Self {
+    pub(super) fn unpack(word: u32) -> Self {
         let rest = word & ((1 << Self::COUNT_SHIFT) - 1);
         if word & Self::LEAF == 0 {
             Self::Node(word)
@@ -94,9 +110,8 @@ impl Word {
 }
 
 impl<T: Layout<ROWS>, const ROWS: usize> Wide<T, ROWS> {
-    /// Of a tree, and how many subtrees may wait while it is walked.
-    pub(crate) fn new<P: Profile>(bvh: &Bvh<'_, P>) -> (Self, usize) {
-        let (sources, waiting) = collapse(bvh);
+    pub(super) fn new<P: Profile>(bvh: &Bvh<'_, P>) -> Self {
+        let sources = collapse(bvh);
         let mut tree = Self { nodes: Vec::new(), packets: Vec::new(), spheres: Vec::new() };
         for source in &sources {
             let mut node =
@@ -110,7 +125,7 @@ impl<T: Layout<ROWS>, const ROWS: usize> Wide<T, ROWS> {
             }
             tree.nodes.push(node);
         }
-        (tree, waiting)
+        tree
     }
 
     fn word<P: Profile>(&mut self, bvh: &Bvh<'_, P>, below: Below) -> Word {

@@ -8,11 +8,11 @@ use core_rt::kernel::{Bounds, Kernel};
 use core_rt::profile::Profile;
 
 /// Children of a node, and triangles that are tested at a time.
-pub(crate) const WIDTH: usize = 8;
+pub(super) const WIDTH: usize = 8;
 
 /// What a child is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Below {
+pub(super) enum Below {
     /// Another node, by its place.
     Node(u32),
     /// A run of triangles.
@@ -22,33 +22,28 @@ pub(crate) enum Below {
 }
 
 /// A node: up to [`WIDTH`] children with their boxes.
-pub(crate) type Node = Vec<(Bounds, Below)>;
+pub(super) type Node = Vec<(Bounds, Below)>;
 
-/// The nodes, the root first, and how many subtrees may wait while they are walked.
-pub(crate) fn collapse<P: Profile>(bvh: &Bvh<'_, P>) -> (Vec<Node>, usize) {
+/// The nodes, the root first.
+pub(super) fn collapse<P: Profile>(bvh: &Bvh<'_, P>) -> Vec<Node> {
     let source = Source::new(bvh);
-    // What a node is made of, with the number of subtrees that may wait above it.
+    // What nodes are made of that are still to be.
     let mut open = vec![match Child::unpack(bvh.root) {
-        Child::Node(index) => (source.children(index).to_vec(), 0),
-        Child::Leaf { .. } => (vec![(bvh.bounds().fold(Bounds::NOTHING, |a, b| a.union(&b)), bvh.root)], 0),
+        Child::Node(index) => source.children(index).to_vec(),
+        Child::Leaf { .. } => vec![(bvh.bounds().fold(Bounds::NOTHING, |a, b| a.union(&b)), bvh.root)],
     }];
-    let (mut nodes, mut waiting_most) = (Vec::new(), 0);
-    let mut next = 0;
-    while let Some((children, waiting)) = open.get_mut(next).map(std::mem::take) {
-        next += 1;
-        let children = source.widened(children);
-        let waiting = waiting + children.len() - 1;
-        waiting_most = waiting_most.max(waiting);
-        let node = children.into_iter().map(|(bounds, child)| {
+    let mut nodes = Vec::new();
+    while let Some(children) = open.get_mut(nodes.len()).map(std::mem::take) {
+        let node = source.widened(children).into_iter().map(|(bounds, child)| {
             let below = source.leaf(child).unwrap_or_else(|| {
-                open.push((source.children_of(child), waiting));
+                open.push(source.children_of(child));
                 Below::Node(open.len() as u32 - 1)
             });
             (bounds, below)
         });
         nodes.push(node.collect());
     }
-    (nodes, waiting_most)
+    nodes
 }
 
 /// The tree that is collapsed.

@@ -2,26 +2,26 @@
 
 use heapless::Vec;
 
-use crate::collapse::WIDTH;
-use crate::tree::Word;
+use super::collapse::WIDTH;
+use super::tree::Word;
 
 /// More may not wait: a tree of the blob has 64 levels at most, and each leaves seven of eight children waiting.
-pub(crate) const WAITING_MAX: usize = 64 * (WIDTH - 1) + 1;
+const WAITING_MAX: usize = 64 * (WIDTH - 1) + 1;
 
 /// Which children of a node a ray enters before a limit.
-pub(crate) struct Entered<'n, T> {
+pub(super) struct Entered<'n, T> {
     /// A bit each.
-    pub(crate) mask: u32,
+    pub(super) mask: u32,
     /// Where.
-    pub(crate) at: [T; WIDTH],
+    pub(super) at: [T; WIDTH],
     /// What they are.
-    pub(crate) children: &'n [u32; WIDTH],
+    pub(super) children: &'n [u32; WIDTH],
 }
 
 /// Visits leaves until `visit` returns no limit any more, or nothing waits.
 #[target_feature(enable = "avx2")]
 #[inline]
-pub(crate) fn walk<'n, T: Copy + Default + PartialOrd>(
+pub(super) fn walk<'n, T: Copy + Default + PartialOrd>(
     mut limit: T,
     mut enter: impl FnMut(u32, T) -> Option<Entered<'n, T>>,
     mut visit: impl FnMut(Word, T) -> Option<T>,

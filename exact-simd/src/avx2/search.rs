@@ -5,14 +5,14 @@ use core_rt::kernel::Kernel;
 use core_rt::profile::Profile;
 use core_rt::stats::Stats;
 
-use crate::tree::{Node, Packet, Wide, Word};
-use crate::walk::{Entered, walk};
+use super::tree::{Node, Packet, Wide, Word};
+use super::walk::{Entered, walk};
 
-pub(crate) type RayOf<P> = <<P as Profile>::Kernel as Kernel>::Ray;
-pub(crate) type DepthOf<P> = <<P as Profile>::Kernel as Kernel>::Depth;
+pub(super) type RayOf<P> = <<P as Profile>::Kernel as Kernel>::Ray;
+pub(super) type DepthOf<P> = <<P as Profile>::Kernel as Kernel>::Depth;
 
 /// What is come upon.
-pub(crate) enum Found<'t, T, const ROWS: usize, D> {
+pub(super) enum Found<'t, T, const ROWS: usize, D> {
     /// Triangles, of which some may be hit within the limit.
     Packet(&'t Packet<T, ROWS>, T),
     /// A sphere that is hit, by its index.
@@ -22,7 +22,7 @@ pub(crate) enum Found<'t, T, const ROWS: usize, D> {
 /// Tells `test` of all that may be hit before the limit that it returns, until it returns none. `reach` is the first.
 #[target_feature(enable = "avx2")]
 #[inline]
-pub(crate) fn search<P: Profile, T: Copy + Default + PartialOrd, const ROWS: usize>(
+pub(super) fn search<P: Profile, T: Copy + Default + PartialOrd, const ROWS: usize>(
     (tree, bvh): (&Wide<T, ROWS>, &Bvh<'_, P>),
     ray: &RayOf<P>,
     reach: T,
@@ -73,22 +73,22 @@ fn sphere<P: Profile>(bvh: &Bvh<'_, P>, ray: &RayOf<P>, index: u32) -> Option<De
 }
 
 /// The nearest of some hits: the smallest (t, id).
-pub(crate) struct Nearest<D> {
+pub(super) struct Nearest<D> {
     hit: u32,
     depth: Option<D>,
 }
 
 impl<D: Copy> Nearest<D> {
-    pub(crate) const NONE: Self = Self { hit: core_rt::kernel::NONE, depth: None };
+    pub(super) const NONE: Self = Self { hit: core_rt::kernel::NONE, depth: None };
 
     /// The index of the nearest.
-    pub(crate) fn hit(&self) -> u32 {
+    pub(super) fn hit(&self) -> u32 {
         self.hit
     }
 
     /// Takes a hit where it is nearer; whether it is.
     #[inline]
-    pub(crate) fn take<P: Profile<Kernel: Kernel<Depth = D>>>(
+    pub(super) fn take<P: Profile<Kernel: Kernel<Depth = D>>>(
         &mut self,
         bvh: &Bvh<'_, P>,
         index: u32,

@@ -8,13 +8,13 @@ use core_rt::profile::Profile;
 use core_rt::stats::Stats;
 use float_rt::{Float32, Ray};
 
-use crate::collapse::WIDTH;
-use crate::search::{Found, Nearest, search};
-use crate::tree::{Layout, Node, Packet, Row, Wide};
-use crate::walk::Entered;
+use super::collapse::WIDTH;
+use super::search::{Found, Nearest, search};
+use super::tree::{Layout, Node, Packet, Row, Wide};
+use super::walk::Entered;
 
 /// v0, e1, e2.
-pub(crate) const ROWS: usize = 9;
+pub(super) const ROWS: usize = 9;
 
 impl Layout<ROWS> for f32 {
     const LANES: [usize; WIDTH] = [0, 1, 2, 3, 4, 5, 6, 7];
@@ -100,7 +100,7 @@ impl Lanes {
         let entry = _mm256_max_ps(near(2), _mm256_max_ps(near(1), _mm256_max_ps(near(0), _mm256_setzero_ps())));
         let exit = _mm256_min_ps(far(2), _mm256_min_ps(far(1), _mm256_min_ps(far(0), _mm256_set1_ps(limit))));
         let missed = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(entry, exit)) as u32;
-        Entered { mask: !missed & ((1 << node.count) - 1), at: zerocopy::transmute!(entry), children: &node.children }
+        Entered { mask: !missed & node.used(), at: zerocopy::transmute!(entry), children: &node.children }
     }
 
     /// The lanes of triangles that are hit, and where.
@@ -126,7 +126,7 @@ impl Lanes {
             _mm256_cmp_ps::<_CMP_GT_OQ>(_mm256_add_ps(u, v), size),
         );
         let ahead = _mm256_and_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(t, zero), _mm256_cmp_ps::<_CMP_GT_OQ>(size, zero));
-        let mask = _mm256_movemask_ps(_mm256_andnot_ps(outside, ahead)) as u32 & ((1 << packet.count) - 1);
+        let mask = _mm256_movemask_ps(_mm256_andnot_ps(outside, ahead)) as u32 & packet.used();
         if mask == 0 {
             return (0, zero);
         }
@@ -136,7 +136,7 @@ impl Lanes {
 }
 
 #[target_feature(enable = "avx2")]
-pub(crate) fn closest<P: Profile<Kernel = Float32>>(
+pub(super) fn closest<P: Profile<Kernel = Float32>>(
     of: (&Wide<f32, ROWS>, &Bvh<'_, P>),
     ray: &Ray<f32>,
     stats: &mut impl Stats,
