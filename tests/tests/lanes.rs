@@ -215,24 +215,22 @@ fn rays_at_spheres_among_triangles_have_the_hits_of_the_plain_walk() {
     }
 }
 
-/// Origins that lanes do not hold, and those at the ends of what they do.
+/// Meshes in the corners of the grid, which rays meet from as far off it as the kernel holds.
 #[test]
-fn rays_from_far_off_the_grid_are_walked_in_place() {
+fn rays_from_off_the_grid_have_the_hits_of_the_plain_walk() {
     if !has_lanes() {
         return;
     }
-    let (corners, triangles) = on_grid(&meshes::sphere(29, 8));
-    let built = Built::new(&corners, &[], 8);
-    let mut random = SplitMix64(11);
-    let ends = [-(1 << 29), 1 - (1 << 29), (1 << 30) - 1, 1 << 30, 0, 1 << 28];
-    let rays: Vec<_> = (0..5000)
-        .filter_map(|_| {
-            let origin = [0; 3].map(|_| ends[random.below(ends.len() as u64) as usize]);
-            let target = triangles[random.below(triangles.len() as u64) as usize][0];
-            Ray::new(origin, [0, 1, 2].map(|i| target[i] - origin[i]), NONE)
-        })
-        .collect();
-    agree("from afar", &built, &rays);
+    let last = (1 << Exact29::GRID_BITS) - 1 - i64::from(Exact29::MARGIN);
+    for (seed, offset) in [(1, 0), (2, last - (1 << 20))] {
+        let moved: Vec<_> =
+            meshes::sphere(20, 8).iter().map(|triangle| triangle.map(|v| v.map(|c| c + offset))).collect();
+        let (corners, triangles) = on_grid(&moved);
+        let built = Built::new(&corners, &[], 8);
+        let rays = adversarial(&built, &triangles, 5000, seed);
+        assert!(rays.iter().any(|ray| ray.origin.iter().any(|c| !(0..1 << 29).contains(c))), "none is from off the grid");
+        agree("a corner of the grid", &built, &rays);
+    }
 }
 
 /// The picture by lanes and the plain one.
