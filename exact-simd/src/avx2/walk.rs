@@ -27,8 +27,8 @@ pub(super) fn walk<'n, T: Copy + Default + PartialOrd>(
     mut visit: impl FnMut(Word, T) -> Option<T>,
 ) {
     let mut stack = Vec::<(u32, T), WAITING_MAX>::new();
-    let mut next = Some((0, T::default()));
-    while let Some((word, entry)) = next.take().or_else(|| stack.pop()) {
+    let _ = stack.push((0, T::default()));
+    while let Some((word, entry)) = stack.pop() {
         if entry > limit {
             continue;
         }
@@ -42,6 +42,7 @@ pub(super) fn walk<'n, T: Copy + Default + PartialOrd>(
                     let child = (children[lane], at[lane]);
                     // The nearest last.
                     let mut place = stack.len();
+                    // There is room: see above.
                     let _ = stack.push(child);
                     while place > below && stack[place - 1].1 < child.1 {
                         stack.swap(place - 1, place);
