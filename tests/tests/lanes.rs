@@ -130,12 +130,7 @@ fn on_grid(triangles: &[[[i64; 3]; 3]]) -> (Vec<Vertices>, Vec<[[i64; 3]; 3]>) {
 }
 
 /// Rays of every adversarial kind at triangles.
-fn adversarial(
-    built: &Built,
-    triangles: &[[[i64; 3]; 3]],
-    count: usize,
-    seed: u64,
-) -> Vec<Ray<Width29>> {
+fn adversarial(built: &Built, triangles: &[[[i64; 3]; 3]], count: usize, seed: u64) -> Vec<Ray<Width29>> {
     let coordinates = || triangles.iter().flatten().flatten().copied();
     let (low, high) = (coordinates().min().unwrap_or(0), coordinates().max().unwrap_or(0));
     let span = i64::from(Exact29::SPAN);
@@ -228,7 +223,10 @@ fn rays_from_off_the_grid_have_the_hits_of_the_plain_walk() {
         let (corners, triangles) = on_grid(&moved);
         let built = Built::new(&corners, &[], 8);
         let rays = adversarial(&built, &triangles, 5000, seed);
-        assert!(rays.iter().any(|ray| ray.origin.iter().any(|c| !(0..1 << 29).contains(c))), "none is from off the grid");
+        assert!(
+            rays.iter().any(|ray| ray.origin.iter().any(|c| !(0..1 << 29).contains(c))),
+            "none is from off the grid"
+        );
         agree("a corner of the grid", &built, &rays);
     }
 }
@@ -260,7 +258,9 @@ fn goldens_are_the_plain_pictures() {
 
 #[test]
 fn the_gallery_is_the_plain_pictures() {
-    for name in ["gallery/materials", "gallery/spheres", "gallery/mirrors", "gallery/glass", "gallery/textures", "raystones"] {
+    for name in
+        ["gallery/materials", "gallery/spheres", "gallery/mirrors", "gallery/glass", "gallery/textures", "raystones"]
+    {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name).join("scene.toml");
         let mut model = import::load(&path).expect("a scene of ours").model;
         model.render.size = [96, 64];

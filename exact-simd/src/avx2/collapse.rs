@@ -84,8 +84,11 @@ impl<'a, P: Profile> Source<'a, P> {
         let (first, count) = self.run(child).filter(|&(_, count)| is_leaf || count <= WIDTH as u32)?;
         let is_sphere = first >= self.bvh.triangles.len();
         // Spheres are tested one by one, as the blob has them.
-        (is_leaf || !is_sphere)
-            .then_some(if is_sphere { Below::Spheres { first, count } } else { Below::Triangles { first, count } })
+        (is_leaf || !is_sphere).then_some(if is_sphere {
+            Below::Spheres { first, count }
+        } else {
+            Below::Triangles { first, count }
+        })
     }
 
     fn children(&self, index: u32) -> [(Bounds, u32); 2] {

@@ -286,9 +286,8 @@ impl Lanes {
     #[target_feature(enable = "avx2")]
     #[inline]
     fn left(&self, packet: &Packet<i32, ROWS>, limit: i32) -> Left {
-        let rows = |first: usize| {
-            [load(&packet.rows[first]), load(&packet.rows[first + 1]), load(&packet.rows[first + 2])]
-        };
+        let rows =
+            |first: usize| [load(&packet.rows[first]), load(&packet.rows[first + 1]), load(&packet.rows[first + 2])];
         let v0 = rows(V0);
         let from = |axis: usize| _mm256_sub_epi32(self.origin[axis], v0[axis]);
         let s = Both::new([from(0), from(1), from(2)]);
@@ -391,7 +390,14 @@ fn hits<P: Profile<Kernel = Exact29>>(
     };
     if is_steep(ray) {
         let reciprocals = ray.direction.map(Reciprocal29::new);
-        search(of, ray, reach(ray), stats, |node, limit| enter_one_by_one(&ray.origin, &reciprocals, node, limit), test);
+        search(
+            of,
+            ray,
+            reach(ray),
+            stats,
+            |node, limit| enter_one_by_one(&ray.origin, &reciprocals, node, limit),
+            test,
+        );
     } else {
         search(of, ray, reach(ray), stats, |node, limit| lanes.enter(node, limit), test);
     }

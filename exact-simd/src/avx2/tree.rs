@@ -146,11 +146,7 @@ impl<T: Layout<ROWS>, const ROWS: usize> Wide<T, ROWS> {
     }
 }
 
-fn packet<P: Profile, T: Layout<ROWS>, const ROWS: usize>(
-    bvh: &Bvh<'_, P>,
-    first: u32,
-    count: u32,
-) -> Packet<T, ROWS> {
+fn packet<P: Profile, T: Layout<ROWS>, const ROWS: usize>(bvh: &Bvh<'_, P>, first: u32, count: u32) -> Packet<T, ROWS> {
     let mut packet = Packet { rows: [Row([T::default(); WIDTH]); ROWS], first, count };
     for lane in 0..count {
         // A checked scene has the triangle; one without size is missed by all but what is asked exactly.
