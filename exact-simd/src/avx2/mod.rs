@@ -3,6 +3,7 @@
 mod collapse;
 mod exact29;
 mod float32;
+mod product;
 mod search;
 mod tree;
 mod walk;
