@@ -10,6 +10,7 @@ use core_rt::exact::{Exact14, Exact20, Exact29};
 use core_rt::hanika::{HanikaC, HanikaCd, HanikaCons};
 use core_rt::profile::Full;
 use core_rt::scene::Scene;
+use exact_simd::{ByEights, Eights, Tree};
 use float_rt::{Float32, Float64};
 
 use crate::grid::{Grid, GridError};
@@ -55,7 +56,14 @@ pub trait Engine: Sync + std::fmt::Debug {
     /// # Errors
     /// Where the blob is not one for this kernel.
     fn render(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<Rendered, BlobError>;
-    /// The same, and what the rays of each pixel saw, row by row.
+    /// The same, by the machine's vector units where the kernel has a way; box and triangle tests are counted as they are made.
+    ///
+    /// # Errors
+    /// Where the blob is not one for this kernel.
+    fn render_in_lanes(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<Rendered, BlobError>;
+    /// The vector units of [`Engine::render_in_lanes`]; `None` where there are none for this kernel.
+    fn lanes(&self) -> Option<&'static str>;
+    /// The picture, and what the rays of each pixel saw, row by row.
     ///
     /// # Errors
     /// Where the blob is not one for this kernel.
@@ -93,10 +101,42 @@ pub struct Sizes {
     pub shading: u64,
 }
 
+/// A kernel with its way to draw by vector units; in place where it has none.
+trait Lanes: Measure {
+    fn unit() -> Option<&'static str> {
+        None
+    }
+
+    fn render(blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<Rendered, BlobError> {
+        Ok(render::render(&Scene::<Full<Self>>::new_checked(blob)?, tile, progress))
+    }
+}
+
+impl Lanes for Exact29 {
+    fn unit() -> Option<&'static str> {
+        exact_simd::unit()
+    }
+
+    fn render(blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<Rendered, BlobError> {
+        let mut scene = Scene::<ByEights>::new_checked(blob)?;
+        let tree = Tree::new(&scene.bvh);
+        scene.walk = Eights::new(tree.as_ref(), &scene);
+        Ok(render::render(&scene, tile, progress))
+    }
+}
+
+impl Lanes for Exact20 {}
+impl Lanes for Exact14 {}
+impl Lanes for HanikaC {}
+impl Lanes for HanikaCd {}
+impl Lanes for HanikaCons {}
+impl Lanes for Float32 {}
+impl Lanes for Float64 {}
+
 #[derive(Debug)]
 struct Of<K>(PhantomData<K>);
 
-impl<K: Measure + std::fmt::Debug> Engine for Of<K> {
+impl<K: Lanes + std::fmt::Debug> Engine for Of<K> {
     fn name(&self) -> &'static str {
         K::NAME
     }
@@ -146,6 +186,14 @@ impl<K: Measure + std::fmt::Debug> Engine for Of<K> {
 
     fn render(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<Rendered, BlobError> {
         Ok(render::render(&Scene::<Full<K>>::new_checked(blob)?, tile, progress))
+    }
+
+    fn render_in_lanes(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<Rendered, BlobError> {
+        <K as Lanes>::render(blob, tile, progress)
+    }
+
+    fn lanes(&self) -> Option<&'static str> {
+        K::unit()
     }
 
     fn witness(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<(Rendered, Vec<Seen>), BlobError> {
