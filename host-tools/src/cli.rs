@@ -2,6 +2,7 @@
 //!
 //! Results go to stdout, everything else to stderr. The exit status is 0, or 1 for a failed check, or 2 for bad input.
 
+mod board;
 mod compare;
 mod demo;
 mod emulate;

@@ -24,12 +24,13 @@ usage: cargo xtask VERB
   studies [--quick]    measures the 2009 report's claims and writes docs/STUDIES.md; quickly, and smaller, to out/studies
   planes               measures the tracer of 1994 and writes docs/PLANES.md
   bless                renews the goldens and the figures of documents, and shows which changed
+  speed [--quick]      compares chips by instructions and hosts by ratios, and writes docs/SPEED.md; quickly to out/speed
   report               measures the gallery and writes docs/report, and the README's part of it
   demo-scene           writes scenes/demo anew
   bench-scene          writes scenes/bench-1k anew";
 
 /// The tests whose files are renewed.
-const BLESSED: [&str; 9] = [
+const BLESSED: [&str; 11] = [
     "bench_scene",
     "goldens",
     "machines",
@@ -37,6 +38,8 @@ const BLESSED: [&str; 9] = [
     "instructions",
     "numerics",
     "gallery",
+    "layouts",
+    "raystones",
     "stress",
     "readme",
 ];
@@ -48,6 +51,7 @@ enum Verb {
     Test { long: bool },
     Fuzz { seconds: u32 },
     Studies { quick: bool },
+    Speed { quick: bool },
     Planes,
     Bless,
     Report,
@@ -63,6 +67,8 @@ impl Verb {
             ["test", "--long"] => Some(Self::Test { long: true }),
             ["fuzz"] => Some(Self::Fuzz { seconds: 60 }),
             ["fuzz", "--seconds", seconds] => Some(Self::Fuzz { seconds: seconds.parse().ok()? }),
+            ["speed"] => Some(Self::Speed { quick: false }),
+            ["speed", "--quick"] => Some(Self::Speed { quick: true }),
             ["studies"] => Some(Self::Studies { quick: false }),
             ["studies", "--quick"] => Some(Self::Studies { quick: true }),
             ["planes"] => Some(Self::Planes),
@@ -107,6 +113,11 @@ fn perform(verb: Verb) -> Result<(), String> {
             fuzz::prepare().map_err(|error| format!("tests/fuzz: {error}"))?;
             let skipped = run(&fuzz::steps(seconds, &[tool::NIGHTLY, tool::CARGO_FUZZ_INSTALLED]))?;
             if skipped == 0 { Ok(()) } else { Err("nothing was fuzzed".into()) }
+        }
+        Verb::Speed { quick } => {
+            let option = if quick { " -- --quick" } else { "" };
+            let line = format!("cargo run --quiet --release -p tests --bin speed{option}");
+            run(&[Step::new("speed", Task::new(&line))]).map(drop)
         }
         Verb::Studies { quick } => {
             let option = if quick { " -- --quick" } else { "" };
@@ -180,6 +191,7 @@ mod tests {
         assert_eq!(Verb::parse(&["fuzz", "--seconds", "5"]), Some(Verb::Fuzz { seconds: 5 }));
         assert_eq!(Verb::parse(&["planes"]), Some(Verb::Planes));
         assert_eq!(Verb::parse(&["report"]), Some(Verb::Report));
+        assert_eq!(Verb::parse(&["speed", "--quick"]), Some(Verb::Speed { quick: true }));
         assert_eq!(Verb::parse(&["studies", "--quick"]), Some(Verb::Studies { quick: true }));
         for wrong in [
             &[][..],
