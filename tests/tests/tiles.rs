@@ -218,7 +218,8 @@ where
                         Footprint::Edges => {}
                     }
                     let values = edges.edges.each_ref().map(|edge| at(&edge.line));
-                    let above = |share: i64| (0..3).all(|i| values[i] >= i64::from(edges.edges[i].uncertain) * share / 2);
+                    let above =
+                        |share: i64| (0..3).all(|i| values[i] >= i64::from(edges.edges[i].uncertain) * share / 2);
                     assert!(above(0) || depth.is_none(), "left out: {}", context());
                     assert!(!above(2) || depth.is_some(), "not hit: {}", context());
                     tally.uncertain += u64::from(above(0) && !above(2));

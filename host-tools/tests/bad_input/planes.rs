@@ -48,9 +48,9 @@ fn machines_that_there_cannot_be() {
     for (arguments, error) in [
         (
             "--local-bits 100",
-            "scene.toml: `camera ray` needs 158 bits at once, and a processor has 100; widen it or narrow the words",
+            "scene.toml: `camera ray` needs 146 bits at once, and a processor has 100; widen it or narrow the words",
         ),
-        ("--backing-bits 32", "scene.toml: 256 bits are swapped out, and the backing store has 32"),
+        ("--backing-bits 32", "scene.toml: 352 bits are swapped out, and the backing store has 32"),
         ("--coordinate-bits 16", "components of 16 bits; there are 4 to 15"),
         ("--t-bits 11", "a fraction of t of 11 bits; there are 0 to 10"),
         (

@@ -17,7 +17,7 @@ fn values(seed: u64, bits: u32) -> impl Fn(usize) -> i64 {
             2..10 => processor as i64 - 5,
             _ => {
                 let mixed = (processor as u64 + seed).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(23);
-                (mixed.wrapping_mul(0xbf58_476d_1ce4_e5b9) >> (64 - bits)) as i64 - most
+                ((mixed.wrapping_mul(0xbf58_476d_1ce4_e5b9) >> (64 - bits)) as i64 - most).min(most)
             }
         }
     }
