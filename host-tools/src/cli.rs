@@ -25,9 +25,9 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-pub use failure::{Failure, warn};
+pub use failure::{Failure, note, warn};
 pub use help::smaller;
-pub use input::SceneArguments;
+pub use input::{SceneArguments, size as picture_size};
 pub use load::Scene;
 
 /// Integer ray tracing for chips without an FPU, and on a PC, bit for bit the same.
@@ -52,6 +52,9 @@ enum Command {
     /// Say which chips a scene fits, and by how much it misses others
     #[command(disable_help_flag = true, disable_version_flag = true)]
     Fit(external::Arguments),
+    /// Open a window to move in, to see a scene by any kernel or as a chip would show it
+    #[command(disable_help_flag = true, disable_version_flag = true)]
+    View(external::Arguments),
     Stress(stress::Arguments),
     Report(report::Arguments),
     #[command(hide = true)]
@@ -71,6 +74,7 @@ pub fn run() -> ExitCode {
         Some(Command::Emulate(arguments)) => emulate::run(&arguments),
         Some(Command::Flash(arguments)) => flash::run(&arguments),
         Some(Command::Fit(arguments)) => return arguments.run(&external::FIT),
+        Some(Command::View(arguments)) => return arguments.run(&external::VIEW),
         Some(Command::Stress(arguments)) => stress::run(&arguments),
         Some(Command::Report(arguments)) => report::run(&arguments),
         Some(Command::RunElf(arguments)) => run_elf::run(&arguments),
