@@ -94,3 +94,97 @@ impl<K: Kernel> Stage for Staged<'_, K> {
         (rgb888(scene.frame.format, &pixels), counts)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::engine::{ENGINES, Engine};
+    use crate::model::{Camera, LightKind};
+    use crate::picture::Picture;
+    use crate::prepare::{Blob, Options};
+    use crate::render::TILE;
+    use crate::{builtin, import};
+
+    fn model(samples: u32) -> Model {
+        let mut model = import::load_from(&import::Embedded(builtin::FILES), "scene.toml").unwrap().model;
+        (model.render.size, model.render.samples) = ([24, 18], samples);
+        model
+    }
+
+    fn seen_from(model: &Model, position: [f64; 3]) -> Model {
+        let camera = Camera { position: position.into(), ..model.camera };
+        Model { camera, ..model.clone() }
+    }
+
+    fn blob(engine: &dyn Engine, model: &Model) -> Blob {
+        engine.prepare(model, &Options::default()).unwrap().blob
+    }
+
+    fn drawn(stage: &dyn Stage, model: &Model) -> Picture {
+        let [width, height] = model.render.size;
+        let mut picture = Picture::new(width, height);
+        for tile in Tile::of([width as u16, height as u16], [7, 5]) {
+            for ([x, y], pixel) in tile.places().zip(stage.tile(tile).0) {
+                picture.pixels_mut()[usize::from(y) * width as usize + usize::from(x)] = pixel;
+            }
+        }
+        picture
+    }
+
+    #[test]
+    fn on_one_grid_the_picture_is_that_of_a_blob_for_the_camera() {
+        for (samples, format) in [(1, crate::model::Format::Rgb888), (2, crate::model::Format::Rgb565)] {
+            let mut model = model(samples);
+            model.render.format = format;
+            for engine in ENGINES {
+                let blob_of_all = blob(engine, &model);
+                let mut stage = engine.stage(blob_of_all.bytes()).unwrap();
+                let mut on_one_grid = 0;
+                for (position, size) in
+                    [([0.1, 1.1, 3.0], [24, 18]), ([0.5, 0.7, 0.2], [9, 30]), ([0.0, 1.0, 3.82], [1, 1])]
+                {
+                    let mut moved = seen_from(&model, position);
+                    moved.render.size = size;
+                    moved.lights[0].kind = LightKind::Point(DVec3::from(position) * 0.9);
+                    assert!(stage.look(&moved), "{} {position:?}", engine.name());
+                    if engine.grid(&moved).unwrap() == stage.grid() {
+                        let expected = engine.render(blob(engine, &moved).bytes(), TILE, &|_| ()).unwrap().picture;
+                        assert_eq!(drawn(stage.as_ref(), &moved), expected, "{} {position:?}", engine.name());
+                        on_one_grid += 1;
+                    }
+                }
+                assert!(on_one_grid > 0, "{}", engine.name());
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_out_of_reach_is_refused_and_changes_nothing() {
+        let model = model(2);
+        for engine in ENGINES {
+            let blob = blob(engine, &model);
+            let mut stage = engine.stage(blob.bytes()).unwrap();
+            assert!(stage.look(&model));
+            let before = drawn(stage.as_ref(), &model);
+            let far = seen_from(&model, [0.0, 1.0, 1e4]);
+            let mut lit_from_afar = model.clone();
+            lit_from_afar.lights[0].kind = LightKind::Point(DVec3::splat(-1e4));
+            let mut lit_otherwise = model.clone();
+            lit_otherwise.lights[0].kind = LightKind::Directional(DVec3::NEG_Y);
+            let mut parallel = model.clone();
+            parallel.camera.projection = Projection::Orthographic { height: 1.0 };
+            let mut empty = model.clone();
+            empty.render.size = [0, 9];
+            for other in [far, lit_from_afar, lit_otherwise, parallel, empty] {
+                assert!(!stage.look(&other), "{}", engine.name());
+                assert_eq!(drawn(stage.as_ref(), &model), before, "{}", engine.name());
+            }
+            // Fewer samples are possible, more are not where the blob says there is one.
+            assert!(stage.look(&self::model(1)));
+        }
+        let blob = blob(ENGINES[0], &self::model(1));
+        assert!(!ENGINES[0].stage(blob.bytes()).unwrap().look(&model));
+    }
+}

@@ -76,8 +76,11 @@ pub fn work(scene: &Scene, desk: &Desk<Job>, newest: &AtomicU64, tell: &dyn Fn(u
     }
 }
 
-/// What a picture takes, or why that cannot be said, for a person.
-fn effort(scene: &Scene, job: &Job) -> Result<Effort, String> {
+/// What a picture takes.
+///
+/// # Errors
+/// Why that cannot be said, for a person.
+pub fn effort(scene: &Scene, job: &Job) -> Result<Effort, String> {
     let target = &TARGETS[job.target];
     let engine = ENGINES[job.view.kernel];
     let prepared = engine.prepare(&job.view.of(scene), &Options::default()).map_err(|error| error.to_string())?;

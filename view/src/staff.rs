@@ -117,8 +117,7 @@ impl Drop for Staff {
         self.wishes.close();
         self.cases.close();
         self.jobs.close();
-        // Who times may be waiting for an emulator, and holds nothing that has to be put away.
-        self.threads.truncate(2);
+        // An emulator that runs is waited for, so that nothing of it is left behind.
         for thread in self.threads.drain(..) {
             // A thread that ended otherwise has said why.
             let _ = thread.join();

@@ -262,6 +262,11 @@ impl ApplicationHandler<Update> for App {
         self.screen = None;
     }
 
+    fn exiting(&mut self, _: &ActiveEventLoop) {
+        // At once, whatever has still to be waited for.
+        self.screen = None;
+    }
+
     fn new_events(&mut self, events: &ActiveEventLoop, cause: StartCause) {
         if matches!(cause, StartCause::ResumeTimeReached { .. }) {
             self.go_on(events);
