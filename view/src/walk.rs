@@ -24,6 +24,9 @@ const FOV_Y: [f64; 2] = [1.0, 150.0];
 /// Digits of a coordinate behind the first one of the scene's size.
 const DIGITS: i32 = 6;
 
+/// How far away the point that it looks at is at least, in sizes of the scene.
+const NEAREST: f64 = 0.1;
+
 /// How many sizes of the scene one may go away from it.
 const FAR: f64 = 100.0;
 
@@ -157,7 +160,7 @@ impl Walk {
             (self.home.position, self.home.look_at)
         } else {
             // Far enough away for the direction to survive the rounding.
-            let distance = (self.home.look_at - self.home.position).length().max(self.diagonal);
+            let distance = (self.home.look_at - self.home.position).length().max(self.diagonal * NEAREST);
             let position = self.rounded(self.place.position);
             (position, self.rounded(position + self.forward() * distance))
         };
