@@ -56,13 +56,18 @@ impl Canvas {
     /// The full picture, once nothing of it is missing.
     #[must_use]
     pub fn full(&self) -> Option<&Picture> {
-        (self.missing == 0).then_some(&self.picture)
+        (self.missing == 0 && !self.picture.pixels().is_empty()).then_some(&self.picture)
+    }
+
+    /// What is seen is no longer the picture that is asked for.
+    pub fn outdate(&mut self) {
+        self.missing = self.picture.pixels().len() as u64;
     }
 
     /// Begins a picture anew, over what is seen where the size is the same.
     pub fn begin(&mut self, size: [u32; 2]) {
         if size == self.size() {
-            self.missing = u64::from(size[0]) * u64::from(size[1]);
+            self.outdate();
         } else {
             *self = Self::new(size);
         }
@@ -143,6 +148,8 @@ mod tests {
             }
             let expected = Picture::from_fn(size[0], size[1], |x, y| full(x as u16, y as u16));
             assert_eq!(canvas.full(), Some(&expected));
+            canvas.outdate();
+            assert_eq!((canvas.picture(), canvas.full()), (&expected, None));
             // What is begun anew is seen until it is replaced.
             canvas.begin(size);
             assert_eq!((canvas.picture(), canvas.full()), (&expected, None));

@@ -120,8 +120,8 @@ mod tests {
     fn what_does_not_fit_is_cut_off() {
         let picture = Picture::from_fn(5, 5, |x, y| [x as u8, y as u8, 0]);
         assert_eq!(shown([1, 1], &picture, 1), [0x02_0200]);
-        assert_eq!(shown([0, 3], &picture, 1), []);
-        assert_eq!(shown([3, 0], &picture, 0), []);
+        assert!(shown([0, 3], &picture, 1).is_empty());
+        assert!(shown([3, 0], &picture, 0).is_empty());
         let mut few = [0; 3];
         assert!(Frame::new(&mut few, [2, 2]).is_none());
     }

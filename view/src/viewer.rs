@@ -313,8 +313,9 @@ impl Viewer {
             return None;
         }
         let wish = Wish { serial: self.serial() + 1, view, draft };
-        if draft.is_none() {
-            self.canvas.begin(view.size);
+        match draft {
+            Some(_) => self.canvas.outdate(),
+            None => self.canvas.begin(view.size),
         }
         self.wish = Some(wish);
         self.is_drafting = is_moving;

@@ -23,36 +23,36 @@ const PAUSE: Duration = Duration::from_millis(20);
 
 /// A key by its place on the keyboard: evdev's number and 8.
 #[derive(Clone, Copy, Debug)]
-pub struct Key(u8);
+pub(crate) struct Key(u8);
 
 impl Key {
-    pub const ESCAPE: Self = Self(9);
-    pub const W: Self = Self(25);
-    pub const E: Self = Self(26);
-    pub const R: Self = Self(27);
-    pub const O: Self = Self(32);
-    pub const P: Self = Self(33);
-    pub const S: Self = Self(39);
-    pub const D: Self = Self(40);
-    pub const H: Self = Self(43);
-    pub const LEFT: Self = Self(113);
+    pub(crate) const ESCAPE: Self = Self(9);
+    pub(crate) const W: Self = Self(25);
+    pub(crate) const E: Self = Self(26);
+    pub(crate) const R: Self = Self(27);
+    pub(crate) const O: Self = Self(32);
+    pub(crate) const P: Self = Self(33);
+    pub(crate) const S: Self = Self(39);
+    pub(crate) const D: Self = Self(40);
+    pub(crate) const H: Self = Self(43);
+    pub(crate) const LEFT: Self = Self(113);
 
     /// The number key of a place, from 0.
-    pub fn digit(place: usize) -> Self {
+    pub(crate) fn digit(place: usize) -> Self {
         Self(10 + place as u8)
     }
 }
 
 /// An X server without hardware.
 #[derive(Debug)]
-pub struct Display {
+pub(crate) struct Display {
     server: Child,
     name: String,
 }
 
 impl Display {
     /// Starts one under a number that is free; `None`, with a line that says so, where Xvfb is absent.
-    pub fn start() -> Option<Self> {
+    pub(crate) fn start() -> Option<Self> {
         let started = Command::new("Xvfb")
             .args("-displayfd 1 -screen 0 800x600x24 -nolisten tcp".split(' '))
             .stdout(Stdio::piped())
@@ -72,7 +72,7 @@ impl Display {
     }
 
     /// Opens a scene's window, with the keyboard.
-    pub fn open(&self, folder: &Path, line: &str) -> Session<'_> {
+    pub(crate) fn open(&self, folder: &Path, line: &str) -> Session<'_> {
         let mut child = Command::new(env!("CARGO_BIN_EXE_intray-view"))
             .args(line.split(' '))
             .current_dir(folder)
@@ -116,7 +116,7 @@ fn lines(stream: impl Read + Send + 'static) -> Receiver<String> {
 
 /// The command in its window.
 #[derive(Debug)]
-pub struct Session<'a> {
+pub(crate) struct Session<'a> {
     child: Child,
     output: Receiver<String>,
     errors: Receiver<String>,
@@ -128,12 +128,12 @@ pub struct Session<'a> {
 
 impl Session<'_> {
     /// The next line on standard output.
-    pub fn line(&self) -> String {
+    pub(crate) fn line(&self) -> String {
         self.output.recv_timeout(PATIENCE).unwrap()
     }
 
     /// The next warning on standard error.
-    pub fn warning(&self) -> String {
+    pub(crate) fn warning(&self) -> String {
         loop {
             let line = self.errors.recv_timeout(PATIENCE).unwrap();
             if line.starts_with("warning: ") {
@@ -143,19 +143,19 @@ impl Session<'_> {
     }
 
     /// Presses keys together, and lets them go after a time in milliseconds.
-    pub fn hold(&self, keys: &[Key], milliseconds: u64) {
+    pub(crate) fn hold(&self, keys: &[Key], milliseconds: u64) {
         keys.iter().for_each(|&Key(code)| self.fake(xproto::KEY_PRESS_EVENT, code, [0, 0]));
         thread::sleep(Duration::from_millis(milliseconds));
         keys.iter().for_each(|&Key(code)| self.fake(xproto::KEY_RELEASE_EVENT, code, [0, 0]));
     }
 
     /// Presses a key, and lets it go.
-    pub fn press(&self, key: Key) {
+    pub(crate) fn press(&self, key: Key) {
         self.hold(&[key], 0);
     }
 
     /// Drags the mouse from a place in the window to another.
-    pub fn drag(&self, from: [i16; 2], to: [i16; 2]) {
+    pub(crate) fn drag(&self, from: [i16; 2], to: [i16; 2]) {
         self.fake(xproto::MOTION_NOTIFY_EVENT, 0, from);
         self.fake(xproto::BUTTON_PRESS_EVENT, 1, [0, 0]);
         for step in 1..=4 {
@@ -170,7 +170,7 @@ impl Session<'_> {
     }
 
     /// Turns the wheel away from the user, or towards them.
-    pub fn wheel(&self, away: bool, notches: u32) {
+    pub(crate) fn wheel(&self, away: bool, notches: u32) {
         for _ in 0..notches {
             for event in [xproto::BUTTON_PRESS_EVENT, xproto::BUTTON_RELEASE_EVENT] {
                 self.fake(event, if away { 4 } else { 5 }, [0, 0]);
@@ -179,7 +179,7 @@ impl Session<'_> {
     }
 
     /// Gives the window another size, as a window manager would.
-    pub fn resize(&self, [width, height]: [u32; 2]) {
+    pub(crate) fn resize(&self, [width, height]: [u32; 2]) {
         let size = ConfigureWindowAux::new().width(width).height(height);
         self.connection.configure_window(self.window, &size).unwrap().check().unwrap();
         self.wait("the new size", |session| (session.size() == [width, height]).then_some(()));
@@ -187,7 +187,7 @@ impl Session<'_> {
     }
 
     /// What is seen in the window.
-    pub fn screenshot(&self) -> Picture {
+    pub(crate) fn screenshot(&self) -> Picture {
         let [width, height] = self.size();
         let [across, down] = [width, height].map(|side| side as u16);
         let image = self.connection.get_image(ImageFormat::Z_PIXMAP, self.window, 0, 0, across, down, !0).unwrap();
@@ -202,7 +202,7 @@ impl Session<'_> {
 
     /// Waits until exactly this is seen.
     #[track_caller]
-    pub fn wait_for(&self, picture: &Picture) {
+    pub(crate) fn wait_for(&self, picture: &Picture) {
         let begin = Instant::now();
         loop {
             let seen = self.screenshot();
@@ -219,7 +219,7 @@ impl Session<'_> {
     }
 
     /// Waits for the command to end; its exit status.
-    pub fn end(mut self) -> Option<i32> {
+    pub(crate) fn end(mut self) -> Option<i32> {
         let begin = Instant::now();
         while begin.elapsed() < PATIENCE {
             if let Some(status) = self.child.try_wait().unwrap() {

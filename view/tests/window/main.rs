@@ -151,8 +151,8 @@ fn a_mesh_alone_has_its_light_at_the_camera() {
 fn a_panel_shows_what_the_chip_would() {
     let Some(display) = Display::start() else { return };
     let folder = folder();
-    // A kernel that no firmware has, so that none is built here.
-    let session = bare(&display, &folder, "scene.toml --size 200x160 --board hifive1 --panel 64x48 --kernel f64");
+    // What the board has no room for, so that no firmware is built here.
+    let session = bare(&display, &folder, "scene.toml --size 200x160 --board microbit --panel 64x48 --kernel f64");
     let mut model = import::load(&folder.path().join("scene.toml")).unwrap().model;
     (model.render.size, model.render.format) = ([64, 48], host_tools::model::Format::Rgb565);
     let f64 = engine::by_name("f64").unwrap();
