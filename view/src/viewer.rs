@@ -4,25 +4,27 @@
 //! before it has come, from where the camera is by then. Once it rests, the full picture is asked for.
 
 mod lines;
+mod message;
+mod outcome;
 mod rate;
 #[cfg(test)]
 mod tests;
 
 use host_tools::compare::Comparison;
 use host_tools::engine::ENGINES;
-use host_tools::model::{Camera, Format, Model};
+use host_tools::model::{Format, Model};
 use host_tools::picture::{Picture, size_is_allowed};
 
 use crate::canvas::{Canvas, draft_size};
-use crate::chip::{Effort, Job, TARGETS};
+use crate::chip::{Effort, TARGETS};
 use crate::frame::Frame;
-use crate::judge::Case;
 use crate::keys::{Hold, Keys};
 use crate::overlay;
-use crate::pad::Pad;
-use crate::painter::{Drawn, Took, View, Wish};
+use crate::painter::{Took, View, Wish};
 use crate::walk::{Steer, Walk};
 use rate::Rate;
+
+pub use message::{Action, Order, Setup, Update};
 
 /// Seconds without a motion of the mouse after which the camera rests.
 const SETTLED: f64 = 0.1;
@@ -35,74 +37,6 @@ const PATIENCE: f64 = 0.02;
 
 /// Radians a pixel of dragging.
 const DRAG: f64 = 0.005;
-
-/// What a key does once.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Action {
-    /// The kernel of a place among [`ENGINES`].
-    Kernel(usize),
-    /// To the chip's panel, and back.
-    Chip,
-    /// The next board.
-    Board,
-    /// Save the full picture.
-    Save,
-    /// Write the camera into the scene.
-    WriteCamera,
-    /// Back to the scene's camera.
-    Home,
-    /// More or less over the picture.
-    Overlay,
-    /// End.
-    Quit,
-}
-
-/// What is to be done by others.
-#[derive(Clone, Debug)]
-pub enum Order {
-    /// Draw.
-    Draw(Wish),
-    /// Compare with the reference.
-    Judge(Case),
-    /// Count a chip's instructions.
-    Time(Job),
-    /// Save a picture, drawn by a kernel.
-    Save(Picture, &'static str),
-    /// Write a camera into the scene.
-    WriteCamera(Camera),
-    /// End.
-    Quit,
-}
-
-/// What has become of an order.
-#[derive(Clone, Debug)]
-pub enum Update {
-    /// Of the wish of a number.
-    Drawn(u64, Drawn),
-    /// How far the picture of a wish is from the reference.
-    Judged(u64, Box<Comparison>),
-    /// What a chip takes for the picture of a wish.
-    Timed(u64, Result<Effort, String>),
-    /// How the gamepad stands.
-    Pad(Pad),
-    /// Something for the user.
-    Said(String),
-}
-
-/// How one begins.
-#[derive(Clone, Copy, Debug)]
-pub struct Setup {
-    /// The kernel's place among [`ENGINES`], in the window and on the chip.
-    pub kernels: [usize; 2],
-    /// Width and height of the window, pixels.
-    pub size: [u32; 2],
-    /// The board's place among [`TARGETS`].
-    pub board: usize,
-    /// Width and height of its panel.
-    pub panel: [u32; 2],
-    /// Whether one begins with the panel.
-    pub is_chip: bool,
-}
 
 /// What is written over the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -367,65 +301,5 @@ impl Viewer {
             self.walk.step(&steer, seconds);
             self.changed_at = now;
         }
-    }
-
-    fn drawn(&mut self, drawn: Drawn, now: f64) -> Vec<Order> {
-        let Some(wish) = self.wish else { return Vec::new() };
-        match drawn {
-            Drawn::Draft(picture, took) => {
-                self.is_drafting = false;
-                self.facts.took = Some(took);
-                self.rate.note(now);
-                self.drafts += 1;
-                self.canvas.draft(&picture, wish.view.size);
-                Vec::new()
-            }
-            Drawn::Tiles(tiles) => {
-                tiles.iter().for_each(|(tile, pixels)| self.canvas.tile(*tile, pixels));
-                Vec::new()
-            }
-            Drawn::Full(took) => {
-                self.facts.took = Some(took);
-                self.facts.full_after = Some(now - self.changed_at);
-                self.rate = Rate::default();
-                self.finished(wish)
-            }
-            Drawn::Failed(reason) => {
-                self.is_drafting = false;
-                self.facts.failure = Some(reason);
-                Vec::new()
-            }
-        }
-    }
-
-    /// What follows the full picture.
-    fn finished(&mut self, wish: Wish) -> Vec<Order> {
-        let Some(picture) = self.canvas.full() else { return Vec::new() };
-        let mut orders = vec![Order::Judge(Case { serial: wish.serial, view: wish.view, picture: picture.clone() })];
-        if std::mem::take(&mut self.saves_when_full) {
-            orders.push(Order::Save(picture.clone(), self.kernel()));
-        }
-        orders.extend(self.time());
-        orders
-    }
-
-    /// The order to time the full picture, on a chip's panel.
-    fn time(&self) -> Vec<Order> {
-        let full = self.canvas.full().zip(self.wish).filter(|_| self.setup.is_chip);
-        let job = full.map(|(picture, Wish { serial, view, .. })| Job {
-            serial,
-            view,
-            picture: picture.clone(),
-            target: self.setup.board,
-        });
-        job.map(Order::Time).into_iter().collect()
-    }
-
-    fn timed(&mut self, effort: Result<Effort, String>) {
-        if let (Ok(effort), Some(took)) = (&effort, self.facts.took) {
-            let place = [self.setup.board, self.setup.kernels[1]];
-            self.known = Some((place, effort.seconds / took.rays.max(1) as f64));
-        }
-        self.facts.effort = Some(effort);
     }
 }

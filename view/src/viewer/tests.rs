@@ -1,8 +1,10 @@
 use super::*;
 use crate::canvas::order;
 use crate::overlay::HELP;
+use crate::pad::Pad;
+use crate::painter::Drawn;
 use glam::DVec3;
-use host_tools::model::Sphere;
+use host_tools::model::{Camera, Sphere};
 
 fn model() -> Model {
     Model { spheres: vec![Sphere { centre: DVec3::ZERO, radius: 0.5, material: 0 }], ..Model::default() }
