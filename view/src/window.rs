@@ -136,11 +136,11 @@ impl App {
                 events.exit();
             }
             for message in said {
-                // Where nobody reads it, it still stands in the window.
-                let _ = match &message {
-                    Ok(done) => output::line(done),
-                    Err(reason) => Ok(warn(reason)),
-                };
+                match &message {
+                    // Where nobody reads it, it still stands in the window.
+                    Ok(done) => drop(output::line(done)),
+                    Err(reason) => warn(reason),
+                }
                 let now = self.now();
                 self.viewer.update(Update::Said(message.unwrap_or_else(|reason| reason)), now);
             }

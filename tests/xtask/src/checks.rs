@@ -81,7 +81,7 @@ pub(crate) fn steps(long: bool) -> Vec<Step> {
             "chips, and the boards' firmware for probe-rs",
             Task::new("cargo test -p chip-fit --profile checked"),
         ),
-        Step::new("the viewer, without a window", Task::new("cargo test -p view --profile checked --lib")),
+        Step::new("the viewer, without a window", Task::new("cargo test -p view --profile checked --lib --test chip")),
         Step::new("the viewer's window", Task::new("cargo test -p view --profile checked --test window"))
             .needing(&[XVFB]),
         Step::new("all of tests, optimised and overflow-checked", test("cargo test -p tests --profile checked")),
