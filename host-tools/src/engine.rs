@@ -19,6 +19,7 @@ use crate::needs::{self, Asked};
 use crate::planes::engine::Planes12;
 use crate::prepare::{self, Options, PrepareError, Prepared};
 use crate::render::{self, Progress, Rendered};
+use crate::stage::{Stage, Staged};
 use crate::trace::{Measure, Trace, Tracer};
 use crate::witness::Seen;
 
@@ -84,6 +85,11 @@ pub trait Engine: Sync + std::fmt::Debug {
     /// # Errors
     /// Where the blob is not one for this kernel, or its header does not say where its grid is.
     fn tracer<'a>(&self, blob: &'a [u8]) -> Result<Box<dyn Trace + 'a>, BlobError>;
+    /// What draws a blob's scene through other cameras than its own.
+    ///
+    /// # Errors
+    /// Where the blob is not one for this kernel, or its header does not say where its grid is.
+    fn stage<'a>(&self, blob: &'a [u8]) -> Result<Box<dyn Stage + 'a>, BlobError>;
 }
 
 /// Bytes of each section, padding left out.
@@ -217,6 +223,12 @@ impl<K: Lanes + std::fmt::Debug> Engine for Of<K> {
         let source = Scene::<Full<K>>::header(blob)?.source;
         let tracer = Tracer::<K>::new(Scene::new_checked(blob)?, &source).ok_or(BlobError::Header)?;
         Ok(Box::new(tracer))
+    }
+
+    fn stage<'a>(&self, blob: &'a [u8]) -> Result<Box<dyn Stage + 'a>, BlobError> {
+        let header = Scene::<Full<K>>::header(blob)?;
+        let staged = Staged::<K>::new(Scene::new_checked(blob)?, &header).ok_or(BlobError::Header)?;
+        Ok(Box::new(staged))
     }
 }
 

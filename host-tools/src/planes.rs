@@ -6,6 +6,7 @@
 pub mod blob;
 pub mod engine;
 pub mod scene;
+mod stage;
 pub mod trace;
 
 use planes_rt::colour::{Light, encode};

@@ -17,6 +17,9 @@ pub use layout::Blob;
 pub use loss::{Keeper, Loss, losses};
 pub use paint::unplaced;
 
+pub(crate) use camera::camera;
+pub(crate) use header::light;
+
 use shared::Shared;
 
 use core_rt::arithmetic::Knobs;

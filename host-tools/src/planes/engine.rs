@@ -21,6 +21,7 @@ use planes_rt::scene::Scene;
 use planes_simd::Lockstep;
 
 use super::scene::{Options as Words, Planes};
+use super::stage::Staged;
 use super::trace::Tracer;
 use super::{NAME, Way, blob, light, lookups, picture};
 use crate::engine::{Engine, Sizes};
@@ -29,6 +30,7 @@ use crate::model::{self, Model};
 use crate::needs::Asked;
 use crate::prepare::{Degenerates, Options, PrepareError, Prepared, transfer};
 use crate::render::{Progress, Rendered};
+use crate::stage::Stage;
 use crate::trace::{Trace, source_grid};
 use crate::witness::{Place, Seen};
 
@@ -157,6 +159,15 @@ impl Engine for Planes12 {
         Ok(Rendered { picture: picture(&scene, &light, transfer), counts: counts(&scene) })
     }
 
+    fn render_in_lanes(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<Rendered, BlobError> {
+        // It has no other way.
+        self.render(blob, tile, progress)
+    }
+
+    fn lanes(&self) -> Option<&'static str> {
+        None
+    }
+
     fn witness(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<(Rendered, Vec<Seen>), BlobError> {
         let (scene, _) = opened(blob)?;
         let [width, height] = scene.settings().size;
@@ -177,6 +188,12 @@ impl Engine for Planes12 {
         let (scene, _) = opened(blob)?;
         let place = source_grid(&source(blob)?).ok_or(BlobError::Header)?;
         Ok(Box::new(Tracer::new(scene, place)))
+    }
+
+    fn stage<'a>(&self, blob: &'a [u8]) -> Result<Box<dyn Stage + 'a>, BlobError> {
+        let (scene, transfer) = opened(blob)?;
+        let place = source_grid(&source(blob)?).ok_or(BlobError::Header)?;
+        Ok(Box::new(Staged::new(scene, place, transfer)))
     }
 }
 
