@@ -10,6 +10,7 @@
 //! does not depend on the order of the visit, and nothing is pruned at equal t.
 
 mod drawing;
+mod rows;
 mod together;
 
 use core::cmp::Ordering;

@@ -5,10 +5,11 @@
 //! rasteriser does it: edge functions and the inverse of the depth are linear in the pixel, and are stepped by addition
 //! (Pineda, "A Parallel Algorithm for Polygon Rasterization", 1988; Reshetov, Soupikov & Hurley, "Multi-Level Ray Tracing
 //! Algorithm", 2005). Every stepped value has a stated bound on its error. Where a sign, or which of two hits is nearer, is not
-//! certain within that bound, the ray of the pixel is tested by itself: the hits are those of single rays, all of them.
+//! certain within that bound, the ray of the pixel is tested by itself: the hits are those of single rays, all of them. Of a sphere
+//! rays are tested wherever its box may be seen.
 
 use crate::camera::Camera;
-use crate::kernel::{Kernel, Vertices};
+use crate::kernel::{Bounds, Kernel, Vertices};
 use crate::num::Triple;
 use crate::render::Tile;
 
@@ -34,6 +35,8 @@ pub trait Beam<K: Kernel>: Sized {
     fn enter<const AXIS: usize>(&self, node: &K::Node, child: usize, limit: K::Distance) -> Option<K::Distance>;
     /// What of the tile a triangle covers.
     fn footprint(&self, vertices: &Vertices, edges: &mut Edges) -> Footprint;
+    /// Functions that are not negative, all of them, wherever a ray may meet a box; `None` where that may be anywhere.
+    fn around(&self, bounds: &Bounds) -> Option<[Linear; 4]>;
     /// Whether the ray of a pixel of the tile hits the triangle of a footprint, where that is certain by the ray's own direction.
     fn meets(ray: &K::Ray, edges: &Edges) -> Option<bool>;
 }
@@ -67,6 +70,10 @@ impl<K: Kernel> Beam<K> for NoBeam {
         match *self {}
     }
 
+    fn around(&self, _: &Bounds) -> Option<[Linear; 4]> {
+        match *self {}
+    }
+
     fn meets(_: &K::Ray, _: &Edges) -> Option<bool> {
         None
     }
@@ -85,6 +92,13 @@ pub struct Linear {
 }
 
 impl Linear {
+    /// In a pixel.
+    #[inline(always)]
+    #[must_use]
+    pub fn at(&self, x: i32, y: i32) -> i32 {
+        self.first + x * self.right + y * self.down
+    }
+
     /// The largest value in a tile whose last pixel is at `last`.
     #[inline(always)]
     #[must_use]
@@ -104,29 +118,26 @@ pub enum Footprint {
     Edges,
 }
 
+/// An edge of a triangle in the pixels of a tile.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Edge {
+    /// Negative where the ray certainly misses.
+    pub line: Linear,
+    /// All of a triangle's are at least these where it certainly hits.
+    pub uncertain: i32,
+    /// What directions are multiplied by for their values.
+    pub vector: Triple<i32>,
+}
+
 /// A triangle in the pixels of a tile.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Edges {
-    /// One is negative where the ray certainly misses.
-    pub edges: [Linear; 3],
-    /// All are at least these where it certainly hits.
-    pub uncertain: [i32; 3],
-    /// What directions are multiplied by for their values.
-    pub vectors: [Triple<i32>; 3],
+    /// One after the other.
+    pub edges: [Edge; 3],
     /// The inverse of the depth, before it is shifted.
     pub nearness: Linear,
     /// By what it is shifted to the right.
     pub shift: u32,
     /// By what it may be wrong, before it is shifted.
     pub band: i32,
-}
-
-impl Edges {
-    /// The inverse of the depth in a pixel, before it is shifted.
-    #[inline(always)]
-    #[must_use]
-    pub fn nearness(&self, x: i32, y: i32) -> i32 {
-        let Linear { first, right, down } = self.nearness;
-        first + x * right + y * down
-    }
 }

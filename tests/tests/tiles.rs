@@ -10,6 +10,7 @@ use core_rt::profile::{Full, Profile};
 use core_rt::render::Tile;
 use core_rt::scene::{MAX_DEPTH, Scene};
 use core_rt::section::Integers;
+use core_rt::sphere::Ball;
 use core_rt::stats::NoStats;
 use core_rt::tile::{Beam, Edges, Footprint, Linear, ROOM, SIDE};
 use host_tools::prepare::{self, Options};
@@ -84,18 +85,28 @@ fn on_grid<W: Width>(triangles: &[[[i64; 3]; 3]]) -> Vec<Vertices> {
 /// Compares all rays of many views of a mesh; how many rays there were, how many hit, and how many were in a beam.
 fn compare<W: Width>(name: &str, mesh: &[Vertices], leaf_max: u32, rays: u64, seed: u64) -> [u64; 3] {
     let options = TreeOptions { leaf_max, leaf_always: leaf_max != 8, ..TreeOptions::default() };
-    let flat = tree::build(mesh.iter().map(Bounds::of), options);
+    let mut random = SplitMix64(seed);
+    // On corners: some stick out of the mesh, some are in it, and rays start in some.
+    let ball = |_| {
+        let centre = mesh[random.below(mesh.len() as u64) as usize][0];
+        let wall = centre.iter().map(|&c| c.min((1 << W::GRID_BITS) - 1 - c)).min().unwrap_or(0) - W::MARGIN;
+        Ball { centre, radius: (wall >> random.below(8)).max(Exact::<W>::RADIUS_MIN) }
+    };
+    let balls: Vec<_> = (0..seed % 4).map(ball).filter(Ball::fits::<Exact<W>>).collect();
+    let flat = tree::build_mixed(mesh.iter().map(Bounds::of), balls.iter().map(Ball::bounds), options);
     let nodes: Vec<_> = flat.nodes.iter().map(|n| Exact::<W>::node(n.boxes, n.children)).collect();
     let triangle = |&i: &u32| Exact::<W>::triangle((), &mesh[i as usize], 0).expect("on the grid, with area");
-    let records: Vec<_> = flat.order.iter().map(triangle).collect();
+    let (of_triangles, of_balls) = flat.order.split_at(mesh.len());
+    let records: Vec<_> = of_triangles.iter().map(triangle).collect();
+    let sphere = |&i: &u32| Exact::<W>::sphere(&balls[i as usize - mesh.len()], 0).expect("it fits");
+    let spheres: Vec<_> = of_balls.iter().map(sphere).collect();
     let bvh = Bvh::<Full<Exact<W>>> {
         root: flat.root,
         nodes: &nodes,
         triangles: Mesh::whole((), &records),
-        spheres: &[],
+        spheres: &spheres,
         ids: Integers::Wide(&flat.order),
     };
-    let mut random = SplitMix64(seed);
     let mut sums = [0; 3];
     while sums[0] < rays {
         let (camera, size) = views::view::<Exact<W>>(mesh, &mut random);
@@ -206,8 +217,9 @@ where
                         }
                         Footprint::Edges => {}
                     }
-                    let values = edges.edges.each_ref().map(at);
-                    let above = |share: i64| (0..3).all(|i| values[i] >= i64::from(edges.uncertain[i]) * share / 2);
+                    let values = edges.edges.each_ref().map(|edge| at(&edge.line));
+                    let above =
+                        |share: i64| (0..3).all(|i| values[i] >= i64::from(edges.edges[i].uncertain) * share / 2);
                     assert!(above(0) || depth.is_none(), "left out: {}", context());
                     assert!(!above(2) || depth.is_some(), "not hit: {}", context());
                     tally.uncertain += u64::from(above(0) && !above(2));

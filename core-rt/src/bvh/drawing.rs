@@ -1,9 +1,10 @@
 //! Triangles that are put into a tile where they are the nearest. See [`tile`](crate::tile).
 
+use super::rows::{Row, Rows};
 use super::together::BeamOf;
 use super::{Bvh, RayOf};
 use crate::kernel::NONE;
-use crate::num::{BitLength, Triple};
+use crate::num::BitLength;
 use crate::profile::Profile;
 use crate::render::Tile;
 use crate::tile::{Beam, Edges, Linear, ROOM, SIDE};
@@ -15,9 +16,6 @@ const _: () = assert!(size_of::<Nearnesses>() < ROOM);
 /// The pixels of the largest tile.
 const PIXELS: usize = 1 << (2 * SIDE_BITS);
 const SIDE_BITS: u32 = SIDE.trailing_zeros();
-
-/// Pixels a side of a block, which is left out at once where a triangle does not reach it.
-const BLOCK: i32 = 4;
 
 /// The nearness of no hit; others are not negative.
 const NOWHERE: i16 = i16::MIN;
@@ -92,19 +90,18 @@ impl<'h> Found<'h> {
 /// What its nearness and that of another hit are wrong by is at most `spread`; where they differ by more, their order is that of
 /// the hits. Elsewhere, and where the triangle's edges do not decide, the pixel's ray is asked.
 pub(super) struct Drawing<'a, 'h, 'b, P: Profile, R> {
-    bvh: &'a Bvh<'b, P>,
-    ray: &'a R,
-    index: u32,
-    tile: Tile,
-    edges: &'a Edges,
+    candidate: Candidate<'a, 'b, P, R>,
     /// By what the triangle's nearness is shifted to the right, in all.
     shift: u32,
+    /// Whether there is room for it in all pixels of the tile.
+    fits: bool,
+    /// It then, if there is.
+    nearness_q16: Linear,
     /// By what it may be wrong then; one for each shift, and one for that of the band.
     band: i32,
     /// By what its difference from another may be.
     spread: i32,
     found: &'a mut Found<'h>,
-    changed: bool,
 }
 
 impl<'a, 'h, 'b, P: Profile, R: Fn([u16; 2]) -> Option<RayOf<P>>> Drawing<'a, 'h, 'b, P, R> {
@@ -122,101 +119,130 @@ impl<'a, 'h, 'b, P: Profile, R: Fn([u16; 2]) -> Option<RayOf<P>>> Drawing<'a, 'h
             most.max(0).unsigned_abs().bit_length().saturating_sub(NEARNESS_BITS)
         });
         let shift = (edges.shift + shift).min(31);
-        let band = (edges.band >> shift) + 2;
+        let band = (edges.band >> shift) + 3;
         let spread = found.band + band;
-        Self { bvh, ray, index, tile, edges, shift, band, spread, found, changed: false }
+        let Linear { first, right, down } = edges.nearness;
+        let [first_size, right_size, down_size] = [first, right, down].map(i32::unsigned_abs);
+        let fits = (first_size >> 1 | right_size << SIDE_BITS | down_size << SIDE_BITS) >> shift >> 13 == 0;
+        let scaled = |value: i32| if shift < 16 { value << (16 - shift) } else { value >> (shift - 16) };
+        let nearness_q16 = Linear { first: scaled(first), right: scaled(right), down: scaled(down) };
+        let candidate = Candidate { bvh, ray, index, tile, edges };
+        Self { candidate, shift, fits, nearness_q16, band, spread, found }
     }
 
-    /// Goes through the tile by blocks.
-    #[inline(never)]
-    pub(super) fn draw(mut self) {
-        let [a, b, c] = &self.edges.edges;
-        let most = |edge: &Linear| edge.first + (BLOCK - 1) * (edge.right.max(0) + edge.down.max(0));
-        let right = [a.right * BLOCK, b.right * BLOCK, c.right * BLOCK];
-        let down = [a.down * BLOCK, b.down * BLOCK, c.down * BLOCK];
-        let mut outside = outside([most(a), most(b), most(c)], right, down);
-        let mut block = 0;
-        while outside != ALL_OUTSIDE {
-            if outside >> 31 == 0 {
-                self.block((block & 3) * BLOCK, (block >> 2) * BLOCK);
-            }
-            outside = outside << 1 | 1;
-            block += 1;
-        }
-        if self.changed {
-            self.found.band = self.found.band.max(self.band);
-        }
-    }
-
+    /// Goes through the tile by rows.
     #[inline(always)]
-    fn block(&mut self, x0: i32, y0: i32) {
-        let [a, b, c] = &self.edges.edges;
-        let (right, down) = ([a.right, b.right, c.right], [a.down, b.down, c.down]);
-        let start = |edge: &Linear| edge.first + x0 * edge.right + y0 * edge.down;
-        let most = right.map(|step| (BLOCK - 1) * step.max(0));
-        // The largest values of a row.
-        let mut row = [start(a) + most[0], start(b) + most[1], start(c) + most[2]];
-        let [p, q, r] = self.edges.uncertain.map(|c| -c);
-        let (x_end, y_end) = (i32::from(self.tile.width).min(x0 + BLOCK), i32::from(self.tile.height).min(y0 + BLOCK));
-        let mut y = y0;
-        while y < y_end {
-            if (row[0] | row[1] | row[2]) >= 0 {
-                let [mut a, mut b, mut c] = [row[0] - most[0], row[1] - most[1], row[2] - most[2]];
-                let mut x = x0;
-                while x < x_end {
-                    if (a | b | c) >= 0 {
-                        self.pixel(x, y, ((a + p) | (b + q) | (c + r)) >= 0);
+    pub(super) fn draw(mut self) {
+        let Candidate { edges, tile, .. } = self.candidate;
+        let (last, height) = (i32::from(tile.width) - 1, i32::from(tile.height));
+        if let Some(mut rows) = Rows::new(edges) {
+            let mut y = rows.skip(height);
+            // A triangle is convex: below a row that it does not reach is none that it does.
+            while y < height && rows.is_reached() {
+                if let Some(row) = rows.row(last) {
+                    self.row(row, y);
+                }
+                rows.advance();
+                y += 1;
+            }
+        } else {
+            for y in 0..height {
+                for x in 0..=last {
+                    if edges.edges.iter().all(|edge| edge.line.at(x, y) >= 0) {
+                        self.pixel(x, y);
                     }
-                    (a, b, c) = (a + right[0], b + right[1], c + right[2]);
-                    x += 1;
                 }
             }
-            row = [row[0] + down[0], row[1] + down[1], row[2] + down[2]];
-            y += 1;
         }
+        self.found.band = self.found.band.max(self.band);
     }
 
     #[inline(always)]
-    fn pixel(&mut self, x: i32, y: i32, is_certain: bool) {
-        // What is too near for the room is as near as there is room for, and so not certainly nearer than another of these. A
-        // hit's is positive but for its error.
-        let nearness = (self.edges.nearness(x, y) >> (self.shift & 31)).clamp(0, i16::MAX.into());
-        let place = [x as usize, y as usize];
-        let nearer = nearness - i32::from(self.found.nearness[(place[1] << SIDE_BITS | place[0]) % PIXELS]);
-        let is_nearer = nearer > self.spread;
-        if nearer >= -self.spread && (is_certain && is_nearer || self.replaces(place, is_nearer)) {
-            self.found.set(place, self.index, nearness as i16);
-            self.changed = true;
+    fn row(&mut self, Row { mut first, mut last, certain }: Row, y: i32) {
+        while first < certain[0] && first <= last {
+            self.pixel(first, y);
+            first += 1;
+        }
+        while last > certain[1] && first <= last {
+            self.pixel(last, y);
+            last -= 1;
+        }
+        while first <= last {
+            let left_out = self.fill(first, last, y);
+            if left_out <= last {
+                self.pixel(left_out, y);
+            }
+            first = left_out + 1;
         }
     }
 
-    /// By the pixel's ray: whether the triangle is hit, where that is all there is to know; else also whether it is the nearest.
+    /// Goes through pixels of a row that the triangle certainly covers, up to the first whose ray is to be asked.
     #[inline(never)]
-    fn replaces(&self, place: [usize; 2], is_nearer: bool) -> bool {
+    fn fill(&mut self, first: i32, last: i32, y: i32) -> i32 {
+        if !self.fits {
+            return first;
+        }
+        let Linear { first: value, right, down } = self.nearness_q16;
+        let mut value = value.wrapping_add(first * right).wrapping_add(y * down);
+        let (place, count) = ([first as usize, y as usize], (last + 1 - first) as usize);
+        let start = place[1] * self.found.stride + place[0];
+        let hits = self.found.hits.get_mut(start..).and_then(|hits| hits.get_mut(..count));
+        let start = (place[1] << SIDE_BITS | place[0]) % PIXELS;
+        let (Some(hits), Some(olds)) = (hits, self.found.nearness[start..].get_mut(..count)) else { return last + 1 };
+        let (spread, index) = (self.spread, self.candidate.index);
+        for (done, (hit, old)) in hits.iter_mut().zip(olds).enumerate() {
+            let nearness = value >> 16;
+            let nearer = nearness - i32::from(*old);
+            if nearer > spread {
+                (*hit, *old) = (index, nearness as i16);
+            } else if nearer >= -spread {
+                return first + done as i32;
+            }
+            value += right;
+        }
+        last + 1
+    }
+
+    /// A pixel that the triangle may cover.
+    #[inline(never)]
+    fn pixel(&mut self, x: i32, y: i32) {
+        let nearness = within(self.candidate.edges.nearness.at(x, y) >> (self.shift & 31));
+        let place = [x as usize, y as usize];
+        let nearer = nearness - i32::from(self.found.nearness[(place[1] << SIDE_BITS | place[0]) % PIXELS]);
+        if nearer >= -self.spread && self.candidate.replaces([x, y], self.found.hit(place), nearer > self.spread) {
+            self.found.set(place, self.candidate.index, nearness as i16);
+        }
+    }
+}
+
+/// A triangle, and what its pixels' rays are asked by.
+struct Candidate<'a, 'b, P: Profile, R> {
+    bvh: &'a Bvh<'b, P>,
+    ray: &'a R,
+    index: u32,
+    tile: Tile,
+    edges: &'a Edges,
+}
+
+impl<P: Profile, R: Fn([u16; 2]) -> Option<RayOf<P>>> Candidate<'_, '_, P, R> {
+    /// By the pixel's ray: whether the triangle is hit, where that is all there is to know; else also whether it is nearer than
+    /// what is hit there so far.
+    #[inline(never)]
+    fn replaces(&self, place: [i32; 2], hit: u32, is_nearer: bool) -> bool {
         let [x, y] = place.map(|c| c as u16);
         let Some(ray) = (self.ray)([self.tile.x + x, self.tile.y + y]) else { return false };
         match BeamOf::<P>::meets(&ray, self.edges) {
             Some(false) => false,
             Some(true) if is_nearer => true,
-            _ => self.bvh.replaces(&ray, self.index, self.found.hit(place)),
+            _ => self.bvh.replaces(&ray, self.index, hit),
         }
     }
 }
 
-/// What [`outside`] says where nothing is inside, and behind the last place.
-const ALL_OUTSIDE: u32 = u32::MAX;
-
-/// Whether one of three functions is negative, in four rows of four places, from the highest bit down; the other bits are set.
-#[inline(never)]
-fn outside([mut a, mut b, mut c]: Triple<i32>, right: Triple<i32>, down: Triple<i32>) -> u32 {
-    let back = [down[0] - 4 * right[0], down[1] - 4 * right[1], down[2] - 4 * right[2]];
-    let mut outside = 0;
-    for _ in 0..4 {
-        for _ in 0..4 {
-            outside = outside << 1 | (a | b | c).cast_unsigned() >> 31;
-            (a, b, c) = (a + right[0], b + right[1], c + right[2]);
-        }
-        (a, b, c) = (a + back[0], b + back[1], c + back[2]);
-    }
-    outside << 16 | 0xffff
+/// A nearness that there is room for. What is nearer is as near as there is room for, and so not certainly nearer than another of
+/// these. A hit's is positive but for its error.
+#[inline(always)]
+fn within(nearness: i32) -> i32 {
+    // One comparison for most.
+    if (0..=i16::MAX.into()).contains(&nearness) { nearness } else { nearness.clamp(0, i16::MAX.into()) }
 }

@@ -8,18 +8,20 @@ use super::drawing::{Drawing, Found, Nearnesses, UNKNOWN};
 use super::{Bvh, Child, DistanceOf, Intersect, RayOf, Stack, waiting};
 use crate::camera::Camera;
 use crate::kernel::{Kernel, NONE};
-use crate::profile::{Need, Needs, Prefer, Profile};
+use crate::profile::{Prefer, Profile};
 use crate::render::Tile;
 use crate::stats::Stats;
-use crate::tile::{Beam, Edges, Footprint, SIDE};
+use crate::tile::{Beam, Edges, Footprint, Linear, SIDE};
+
+/// Leaves of spheres that wait until all triangles of a tile are where they are; others are put at once, and rays asked of what is
+/// found after them.
+const ASIDE: usize = 8;
 
 pub(super) type BeamOf<P> = <<P as Profile>::Kernel as Kernel>::Beam;
 
 impl<P: Profile> Bvh<'_, P> {
-    /// Whether tiles walk together, which is more code. They know triangles alone; and a profile that is not of all scenes has spheres where its
-    /// scene has some.
-    const HAS_TILES: bool =
-        matches!(P::PREFER, Prefer::Speed) && (!P::NEEDS.has(Need::Spheres) || P::NEEDS.bits() == Needs::ALL.bits());
+    /// Whether tiles walk together, which is more code.
+    const HAS_TILES: bool = matches!(P::PREFER, Prefer::Speed);
 
     /// See [`Intersect::closest_tile`].
     #[expect(clippy::too_many_arguments, reason = "the storage of a tile has three parts")]
@@ -34,7 +36,7 @@ impl<P: Profile> Bvh<'_, P> {
         stats: &mut impl Stats,
     ) {
         let one = |place, stack: &mut _, stats: &mut _| ray(place).map_or(NONE, |ray| self.closest(&ray, stack, stats));
-        if !Self::HAS_TILES || !self.spheres.is_empty() {
+        if !Self::HAS_TILES {
             for (hit, place) in hits.iter_mut().zip(tile.places()) {
                 *hit = one(place, stack, stats);
             }
@@ -74,9 +76,15 @@ impl<P: Profile> Bvh<'_, P> {
         let mut edges = Edges::default();
         let mut limit = beam.reach();
         let mut next = Some(self.root);
+        // Spheres are put last: how near they are is known to rays alone, and triangles are drawn without asking these.
+        let mut aside = heapless::Vec::<u32, ASIDE>::new();
         stack.clear();
         while let Some(leaf) = next.and_then(|child| self.entered(beam, child, limit, stack, stats)) {
             let Child::Leaf { first, count } = Child::unpack(leaf.get()) else { return };
+            // No vertices are those of a sphere.
+            if self.sphere(first).is_some() && aside.push(leaf.get()).is_err() {
+                self.put_spheres(beam, ray, tile, leaf.get(), &mut found, stats);
+            }
             for index in first..first + count {
                 let vertices = self.triangles.vertices(index);
                 let Some(vertices) = &vertices else { continue };
@@ -84,13 +92,37 @@ impl<P: Profile> Bvh<'_, P> {
                 match beam.footprint(vertices, &mut edges) {
                     Footprint::Nothing => {}
                     Footprint::Edges => Drawing::new(self, &edges, ray, tile, index, &mut found).draw(),
-                    Footprint::Unknown => self.try_all(ray, tile, index, &mut found),
+                    Footprint::Unknown => self.try_where(&Default::default(), ray, tile, index, &mut found),
                 }
             }
             if found.closes() {
                 limit = beam.limit(found.least());
             }
             next = waiting::<P::Kernel>(stack, limit);
+        }
+        for &leaf in &aside {
+            self.put_spheres(beam, ray, tile, leaf, &mut found, stats);
+        }
+    }
+
+    /// Puts a leaf's spheres where they are the nearest, by testing rays that may meet their boxes.
+    #[inline(never)]
+    fn put_spheres(
+        &self,
+        beam: &BeamOf<P>,
+        ray: &impl Fn([u16; 2]) -> Option<RayOf<P>>,
+        tile: Tile,
+        leaf: u32,
+        found: &mut Found<'_>,
+        stats: &mut impl Stats,
+    ) {
+        let Child::Leaf { first, count } = Child::unpack(leaf) else { return };
+        for index in first..first + count {
+            let Some(sphere) = self.sphere(index) else { continue };
+            stats.sphere();
+            // Functions that are 0 leave out nothing.
+            let around = beam.around(&P::Kernel::ball(sphere).bounds()).unwrap_or_default();
+            self.try_where(&around, ray, tile, index, found);
         }
     }
 
@@ -122,23 +154,43 @@ impl<P: Profile> Bvh<'_, P> {
         self.descend(child, limit, stack, stats, |node, child| beam.enter::<AXIS>(node, child, limit))
     }
 
-    /// Puts a triangle where it is the nearest, by testing every ray.
+    /// Puts a primitive where it is the nearest, by testing every ray for which no function is negative.
     #[inline(never)]
-    fn try_all(&self, ray: &impl Fn([u16; 2]) -> Option<RayOf<P>>, tile: Tile, index: u32, found: &mut Found<'_>) {
-        for [x, y] in tile.places() {
-            let place = [x - tile.x, y - tile.y].map(usize::from);
-            let hit = found.hit(place);
-            if ray([x, y]).is_some_and(|ray| self.replaces(&ray, index, hit)) {
-                found.set(place, index, 0);
-                found.band = UNKNOWN;
+    fn try_where(
+        &self,
+        functions: &[Linear; 4],
+        ray: &impl Fn([u16; 2]) -> Option<RayOf<P>>,
+        tile: Tile,
+        index: u32,
+        found: &mut Found<'_>,
+    ) {
+        let last = i32::from(tile.width) - 1;
+        for y in 0..tile.height {
+            let row = functions.map(|f| Linear { first: f.first + i32::from(y) * f.down, ..f });
+            if row.iter().any(|f| f.first + last * f.right.max(0) < 0) {
+                continue;
+            }
+            for x in 0..tile.width {
+                if row.iter().any(|f| f.first + i32::from(x) * f.right < 0) {
+                    continue;
+                }
+                let place = [x, y].map(usize::from);
+                let hit = found.hit(place);
+                if ray([tile.x + x, tile.y + y]).is_some_and(|ray| self.replaces(&ray, index, hit)) {
+                    found.set(place, index, 0);
+                    found.band = UNKNOWN;
+                }
             }
         }
     }
 
-    /// Whether a ray hits a triangle, nearer than another that it hits or that is [`NONE`].
+    /// Whether a ray hits a primitive, nearer than another that it hits or that is [`NONE`].
     #[inline(never)]
     pub(super) fn replaces(&self, ray: &RayOf<P>, index: u32, other: u32) -> bool {
-        let depth = |index: u32| self.triangles.of(index, |triangle| P::Kernel::intersect(ray, triangle)).flatten();
+        let depth = |index: u32| match self.sphere(index) {
+            Some(sphere) => P::Kernel::intersect_sphere(ray, sphere, false),
+            None => self.triangles.of(index, |triangle| P::Kernel::intersect(ray, triangle)).flatten(),
+        };
         let Some(new) = depth(index) else { return false };
         depth(other).is_none_or(|old| self.nearer((index, &new), (other, &old)))
     }

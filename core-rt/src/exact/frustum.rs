@@ -21,10 +21,10 @@ use super::boxes::BoxNode;
 use super::width::{Distance, Wide, Width};
 use super::{Exact, Ray};
 use crate::camera::Camera;
-use crate::kernel::Vertices;
-use crate::num::{Triple, Word, cross, mantissa, narrow_dot, reciprocal};
+use crate::kernel::{Bounds, Vertices};
+use crate::num::{Triple, Word, cross, mantissa, narrow_dot, reciprocal, sub};
 use crate::render::Tile;
-use crate::tile::{Beam, Edges, Footprint, Linear, SIDE};
+use crate::tile::{Beam, Edge, Edges, Footprint, Linear, SIDE};
 
 /// The bits of a direction's component, without those below the unit.
 const UNIT_BITS: u32 = 13;
@@ -98,8 +98,8 @@ pub struct Frustum<W: Width> {
     is_down: bool,
     /// The largest component along it.
     largest: i32,
-    /// The origin that depths of low planes and high ones are counted from.
-    depth_origin: [i32; 2],
+    /// The origin that depths of near planes are counted from.
+    depth_origin: i32,
     /// Of the two other axes, what high and low planes are tested with.
     sides: [[Side; 2]; 2],
 }
@@ -236,7 +236,7 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
             axis,
             is_down,
             largest: (largest >> 2) + 2 + (spread >> fraction_bits),
-            depth_origin: [up[0], below[0]],
+            depth_origin: if is_down { below[0] } else { up[0] },
             sides,
         })
     }
@@ -266,10 +266,10 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
     fn enter<const AXIS: usize>(&self, node: &W::Node, child: usize, limit: Distance<W>) -> Option<Distance<W>> {
         let [low, high] = &node.planes()[child];
         let (u_low, u_high) = (Self::coarse(low[AXIS]), Self::coarse(high[AXIS]));
-        let (low_depth, high_depth) = (u_low - self.depth_origin[0], u_high - self.depth_origin[1]);
-        let (near, far) = if self.is_down { (-high_depth, -low_depth) } else { (low_depth, high_depth) };
+        let near = if self.is_down { self.depth_origin - u_high } else { u_low - self.depth_origin };
         let near = <Distance<W> as Word>::from_i32(near);
-        if far <= 0 || near > limit {
+        // Behind the eye there is nothing between the planes.
+        if near > limit {
             return None;
         }
         for which in [0, 1] {
@@ -289,12 +289,16 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
         Some(near)
     }
 
-    #[inline(never)]
+    #[inline(always)]
     fn footprint(&self, vertices: &Vertices, edges: &mut Edges) -> Footprint {
-        let [p, q, r] = vertices.map(|vertex| {
-            let from = |axis: usize| W::Word::from_i32(vertex[axis]) - self.origin[axis];
-            [from(0), from(1), from(2)]
-        });
+        let [p, q, r] = vertices.map(|vertex| vertex.map(W::Word::from_i32));
+        let from_origin = sub(p, self.origin);
+        // By edges: a record has these.
+        let moved = |to: Triple<W::Word>| {
+            let e = sub(to, p);
+            [from_origin[0] + e[0], from_origin[1] + e[1], from_origin[2] + e[2]]
+        };
+        let [p, q, r] = [from_origin, moved(q), moved(r)];
         let [a, b, c] = [cross(p, q), cross(q, r), cross(r, p)];
         let sum = |axis: usize| a[axis].wrapping_sub(-b[axis]).wrapping_sub(-c[axis]);
         let normal = [sum(0), sum(1), sum(2)];
@@ -305,15 +309,15 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
         }
         let is_back = volume < zero;
         let shift = W::Word::common_bits(a.into_iter().chain(b).chain(c)).saturating_sub(self.vector_bits);
-        for (edge, vector) in [a, b, c].into_iter().enumerate() {
+        for (edge, vector) in edges.edges.iter_mut().zip([a, b, c]) {
             let g = if is_back { vector.map(|c| -rounded(c, shift)) } else { vector.map(|c| rounded(c, shift)) };
             let linear = self.linear(g);
             let band = self.off(g) + (self.length >> 1) + LINEAR_ERROR;
-            let linear = Linear { first: linear.first + band, ..linear };
-            if linear.most(self.last) < 0 {
+            let line = Linear { first: linear.first + band, ..linear };
+            if line.most(self.last) < 0 {
                 return Footprint::Nothing;
             }
-            (edges.edges[edge], edges.uncertain[edge], edges.vectors[edge]) = (linear, 2 * band, g);
+            *edge = Edge { line, uncertain: 2 * band, vector: g };
         }
         let (leading, length) = (if is_back { -volume } else { volume }).leading();
         let m = mantissa(leading) as i32;
@@ -331,12 +335,36 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
         Footprint::Edges
     }
 
+    /// With u the axis of depth and v another, all of the box is at p_v <= (b / a) |p_u|, b being its highest v and a the nearest u,
+    /// or for b < 0 the farthest: then b |D_u| - a D_v is not negative where a ray meets it. Likewise below.
+    fn around(&self, bounds: &Bounds) -> Option<[Linear; 4]> {
+        let from = |axis: usize, place: i32| W::Word::from_i32(place) - self.origin[axis];
+        let low = |axis: usize| (from(axis, bounds.low[axis]) >> Self::COARSE_BITS).low_i32();
+        let high = |axis: usize| -((-from(axis, bounds.high[axis])) >> Self::COARSE_BITS).low_i32();
+        let u = self.axis;
+        let (near, far) = if self.is_down { (-high(u), -low(u)) } else { (low(u), high(u)) };
+        if near <= 0 {
+            return None;
+        }
+        let line = |v: usize, slope: i32, depth: i32| {
+            let mut g = [0; 3];
+            (g[u], g[v]) = (if self.is_down { -slope } else { slope }, depth);
+            let g = g.map(|c| rounded(c, BOX_BITS.saturating_sub(self.vector_bits)));
+            let line = self.linear(g);
+            Linear { first: line.first + self.off(g) + (self.length >> 1) + LINEAR_ERROR, ..line }
+        };
+        let above = |v: usize| line(v, high(v), -if high(v) < 0 { far } else { near });
+        let below = |v: usize| line(v, -low(v), if low(v) > 0 { far } else { near });
+        let [v, w] = [(u + 1) % 3, (u + 2) % 3];
+        Some([above(v), below(v), above(w), below(w)])
+    }
+
     /// A vector is within 1/2 along each axis, or without error: its product with a direction is off by at most half the sum of
     /// the direction's components.
     #[inline]
     fn meets(ray: &Ray<W>, edges: &Edges) -> Option<bool> {
         let error = (W::Word::ONE + W::Word::ONE + W::Word::ONE) << (W::DIRECTION_BITS - 1);
-        let values = edges.vectors.map(|vector| narrow_dot(ray.direction, vector.map(W::Word::from_i32)));
+        let values = edges.edges.map(|edge| narrow_dot(ray.direction, edge.vector.map(W::Word::from_i32)));
         if values.iter().any(|&value| value < -error) {
             Some(false)
         } else {

@@ -120,7 +120,8 @@ pub(super) fn vertex<W: Width>(place: Triple<i32>) -> Triple<W::Short> {
 
 /// The corners.
 pub(super) fn vertices<W: Width>(triangle: &TriangleRecord<W::Short>) -> Vertices {
-    let [v0, e1, e2]: [Triple<W::Word>; 3] = [triangle.v0(), triangle.e1(), triangle.e2()];
+    let v0 = triangle.v0_fields().map(W::coordinate);
+    let [e1, e2]: [Triple<W::Word>; 2] = [triangle.e1(), triangle.e2()];
     let add = |e: Triple<W::Word>| [v0[0] + e[0], v0[1] + e[1], v0[2] + e[2]];
     [v0, add(e1), add(e2)].map(|v| v.map(Word::low_i32))
 }

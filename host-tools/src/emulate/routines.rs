@@ -45,6 +45,8 @@ const ROUTINES: [(&str, Option<&str>, &[Need]); 42] = {
         ("core-rt/src/paint.rs", Some("uvs_of"), &[Texture]),
         ("core-rt/src/paint.rs", Some("colours_of"), &[VertexColours]),
         ("core-rt/src/exact/sphere.rs", None, &[Spheres]),
+        ("core-rt/src/exact/frustum.rs", Some("around"), &[Spheres]),
+        ("core-rt/src/bvh/together.rs", Some("put_spheres"), &[Spheres]),
         ("core-rt/src/sphere.rs", None, &[Spheres]),
         ("core-rt/src/num/rsqrt.rs", Some("isqrt_u64"), &[Spheres]),
         ("core-rt/src/space.rs", Some("fresnel_q16"), &[Schlick]),
