@@ -16,6 +16,7 @@ use float_rt::{Float32, Float64};
 use crate::grid::{Grid, GridError};
 use crate::model::Model;
 use crate::needs::{self, Asked};
+use crate::planes::engine::Planes12;
 use crate::prepare::{self, Options, PrepareError, Prepared};
 use crate::render::{self, Progress, Rendered};
 use crate::trace::{Measure, Trace, Tracer};
@@ -41,6 +42,11 @@ pub trait Engine: Sync + std::fmt::Debug {
     /// # Errors
     /// Where the kernel cannot hold it.
     fn prepare(&self, model: &Model, options: &Options) -> Result<Prepared, PrepareError>;
+    /// What a model loses on a grid, a sentence each.
+    fn losses(&self, model: &Model, grid: &Grid) -> Vec<String> {
+        let losses = prepare::losses(self.name(), self.grid_bits(), self.radius_min(), model, grid);
+        losses.iter().map(ToString::to_string).collect()
+    }
     /// The header and the sizes of a blob, checked as the device checks it.
     ///
     /// # Errors
@@ -81,7 +87,7 @@ pub trait Engine: Sync + std::fmt::Debug {
 }
 
 /// Bytes of each section, padding left out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Sizes {
     /// Tree nodes.
     pub nodes: u64,
@@ -226,10 +232,13 @@ pub const ENGINES: [&dyn Engine; 8] = [
     &Of::<Float64>(PhantomData),
 ];
 
+/// The tracer of 1994, apart from those that take any scene: it has spheres alone.
+pub const PLANES12: &dyn Engine = &Planes12;
+
 /// The kernel of a name.
 #[must_use]
 pub fn by_name(name: &str) -> Option<&'static dyn Engine> {
-    ENGINES.into_iter().find(|engine| engine.name() == name)
+    ENGINES.into_iter().chain([PLANES12]).find(|engine| engine.name() == name)
 }
 
 /// The kernel of a number, as a blob has it.

@@ -45,7 +45,7 @@ pub(crate) fn steps(long: bool) -> Vec<Step> {
         .needing(&[THUMBV6M, RISCV32IMAC]),
     ];
     for (package, target, tools) in FIRMWARE {
-        for features in ["", " --features rtt"] {
+        for features in ["", " --features rtt", " --features planes"] {
             let line = format!("cargo clippy -p {package} --target {target}{features} -- -D warnings");
             steps.push(Step::new(format!("lints of {package}{features}"), Task::new(&line)).needing(tools));
         }
