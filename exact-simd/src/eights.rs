@@ -94,9 +94,7 @@ impl<P: Profile<Kernel = Exact29>> Intersect<Exact29> for Over<'_, P> {
         stack: &mut Stack<Exact29>,
         stats: &mut impl Stats,
     ) {
-        // Of spheres there is no tile's walk: then rays go one by one there too.
-        let is_together = self.way.has_tiles && camera.is_some() && self.bvh.spheres.is_empty();
-        if self.way.tree.is_none() || is_together {
+        if self.way.tree.is_none() || (self.way.has_tiles && camera.is_some()) {
             return self.bvh.closest_tile(camera, ray, tile, hits, room, stack, stats);
         }
         for (hit, place) in hits.iter_mut().zip(tile.places()) {

@@ -23,17 +23,18 @@
 //! Sums of three products are below 3 * 2^59. U and V are at most 2^29, W below 2^31. A value of [`ERROR`] or more has a certain sign.
 
 use core::arch::x86_64::*;
+use core::cmp::Ordering;
 
 use core_rt::bvh::Bvh;
 use core_rt::exact::{Depth, Exact29, Ray, Reciprocal, Reciprocal29, Width, Width29};
-use core_rt::kernel::{Kernel, Vertices};
+use core_rt::kernel::{Kernel, NONE, Vertices};
 use core_rt::num::{cross, sub};
 use core_rt::profile::Profile;
 use core_rt::stats::Stats;
 
 use super::collapse::WIDTH;
 use super::product::{Both, SHUFFLED, Triple, bits, load, product, shuffle, splat};
-use super::search::{Found, Nearest, search};
+use super::search::{Found, search};
 use super::tree::{Layout, Node, Packet, Wide};
 use super::walk::Entered;
 
@@ -55,6 +56,9 @@ const ERROR: i32 = 6;
 /// What det and tn are off by at most.
 const DET_ERROR: i32 = 3;
 const TN_ERROR: i32 = 2;
+
+/// A smaller det does not tell well where a hit is.
+const DET_LEAST: i64 = 1 << 14;
 
 /// v0, e1, e2 and n, three rows each.
 pub(super) const ROWS: usize = 12;
@@ -155,6 +159,25 @@ impl Left {
         // Twice what the floor left of it is low by less than 2.
         let product = _mm256_add_epi32(_mm256_add_epi32(half, half), _mm256_set1_epi32(2 + TN_ERROR));
         bits(_mm256_cmpgt_epi32(self.tn, product))
+    }
+
+    /// Where a line that meets the triangle of a lane hits it, if that is certainly ahead and before `end`, a t as bounds are.
+    /// Both products are below 2^60.
+    #[target_feature(enable = "avx2")]
+    #[inline]
+    fn within(&self, lane: u32, end: i64) -> Option<At> {
+        let at = |row: __m256i| -> i64 {
+            let row: [i32; WIDTH] = zerocopy::transmute!(row);
+            row[lane as usize % WIDTH].into()
+        };
+        let (det, tn) = (at(self.det), at(self.tn));
+        if det < DET_LEAST || tn < i64::from(TN_ERROR) {
+            return None;
+        }
+        let [error, det_error] = [TN_ERROR, DET_ERROR].map(i64::from);
+        let least = ((tn - error) << Width29::T_BITS) / (det + det_error);
+        let most = ((tn + error) << Width29::T_BITS) / (det - det_error) + 1;
+        (most < end).then_some(At::Within([least, most]))
     }
 }
 
@@ -264,6 +287,61 @@ fn hit<P: Profile<Kernel = Exact29>>(
     bvh.triangles.of(index, |triangle| test(ray, triangle)).flatten()
 }
 
+/// Where a hit is.
+enum At {
+    /// Between two t, in `T_BITS` of the kernel.
+    Within([i64; 2]),
+    /// Exactly.
+    Exactly(Depth<Width29>),
+}
+
+impl At {
+    /// Two t that it is between, or at.
+    #[inline]
+    fn bounds(&self) -> [i64; 2] {
+        match *self {
+            Self::Within(bounds) => bounds,
+            Self::Exactly(depth) => [depth.t - Width29::SLACK, depth.t + Width29::SLACK],
+        }
+    }
+}
+
+/// Whether a hit is nearer than another: by bounds where these tell, else exactly, and by their ids where they are as far.
+#[inline]
+fn is_nearer<P: Profile<Kernel = Exact29>>(
+    bvh: &Bvh<'_, P>,
+    ray: &Ray<Width29>,
+    (index, at): (u32, &At),
+    (other, than): (u32, &At),
+) -> bool {
+    let ([least, most], [other_least, other_most]) = (at.bounds(), than.bounds());
+    if most < other_least || other_most < least {
+        return most < other_least;
+    }
+    is_exactly_nearer(bvh, ray, (index, at), (other, than))
+}
+
+#[cold]
+#[inline(never)]
+fn is_exactly_nearer<P: Profile<Kernel = Exact29>>(
+    bvh: &Bvh<'_, P>,
+    ray: &Ray<Width29>,
+    (index, at): (u32, &At),
+    (other, than): (u32, &At),
+) -> bool {
+    let depth = |index: u32, at: &At| match *at {
+        At::Within(_) => hit(bvh, ray, index, true),
+        At::Exactly(depth) => Some(depth),
+    };
+    // Both are hits.
+    let Some((depth, than)) = depth(index, at).zip(depth(other, than)) else { return false };
+    match Exact29::order(&depth, &than) {
+        Ordering::Less => true,
+        Ordering::Equal => bvh.id(index) < bvh.id(other),
+        Ordering::Greater => false,
+    }
+}
+
 /// Tells of all hits before the limit that `visit` returns, until it returns none.
 #[target_feature(enable = "avx2")]
 #[inline]
@@ -271,11 +349,12 @@ fn hits<P: Profile<Kernel = Exact29>>(
     of: (&Wide<i32, ROWS>, &Bvh<'_, P>),
     ray: &Ray<Width29>,
     stats: &mut impl Stats,
-    mut visit: impl FnMut(u32, Depth<Width29>) -> Option<i32>,
+    mut visit: impl FnMut(u32, At) -> Option<i32>,
 ) {
     let lanes = Lanes::new(ray);
+    let end = ray.reach.map_or(i64::MAX, |reach| 1 << (Width29::T_BITS as i32 + reach).clamp(0, 62));
     let test = |found: Found<'_, i32, ROWS, Depth<Width29>>| match found {
-        Found::Sphere(index, depth) => visit(index, depth),
+        Found::Sphere(index, depth) => visit(index, At::Exactly(depth)),
         Found::Packet(packet, mut limit) => {
             let left = lanes.left(packet, limit);
             let mut mask = left.mask;
@@ -283,10 +362,14 @@ fn hits<P: Profile<Kernel = Exact29>>(
                 let lane = mask.trailing_zeros();
                 mask &= mask - 1;
                 let index = packet.first + lane;
-                if index != ray.skip
-                    && let Some(depth) = hit(of.1, ray, index, left.is_met >> lane & 1 != 0)
-                {
-                    limit = visit(index, depth)?;
+                if index == ray.skip {
+                    continue;
+                }
+                let is_met = left.is_met >> lane & 1 != 0;
+                let within = if is_met { left.within(lane, end) } else { None };
+                let at = within.or_else(|| hit(of.1, ray, index, is_met).map(At::Exactly));
+                if let Some(at) = at {
+                    limit = visit(index, at)?;
                     if mask != 0 {
                         mask &= !left.beyond(limit);
                     }
@@ -317,15 +400,16 @@ pub(super) fn closest<P: Profile<Kernel = Exact29>>(
     ray: &Ray<Width29>,
     stats: &mut impl Stats,
 ) -> u32 {
-    let (mut nearest, mut limit) = (Nearest::NONE, reach(ray));
-    hits(of, ray, stats, |index, depth| {
-        if nearest.take(of.1, index, depth) {
+    let (mut nearest, mut limit): (Option<(u32, At)>, _) = (None, reach(ray));
+    hits(of, ray, stats, |index, at| {
+        if nearest.as_ref().is_none_or(|nearest| is_nearer(of.1, ray, (index, &at), (nearest.0, &nearest.1))) {
             // Not below T: what is as far is still to be found.
-            limit = ((depth.t + Width29::SLACK) >> (Width29::T_BITS - T_BITS)) as i32;
+            limit = (at.bounds()[1].min(Width29::T_MAX) >> (Width29::T_BITS - T_BITS)) as i32;
+            nearest = Some((index, at));
         }
         Some(limit)
     });
-    nearest.hit()
+    nearest.map_or(NONE, |(index, _)| index)
 }
 
 /// Whether anything that is hit blocks.
