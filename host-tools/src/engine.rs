@@ -67,9 +67,13 @@ pub trait Engine: Sync + std::fmt::Debug {
     ///
     /// # Errors
     /// Where the blob is not one for this kernel.
-    fn render_in_lanes(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<Rendered, BlobError>;
+    fn render_in_lanes(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<Rendered, BlobError> {
+        self.render(blob, tile, progress)
+    }
     /// The vector units of [`Engine::render_in_lanes`]; `None` where there are none for this kernel.
-    fn lanes(&self) -> Option<&'static str>;
+    fn lanes(&self) -> Option<&'static str> {
+        None
+    }
     /// The picture, and what the rays of each pixel saw, row by row.
     ///
     /// # Errors

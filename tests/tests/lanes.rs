@@ -76,6 +76,9 @@ impl Built {
     }
 }
 
+/// What is asked whether it blocks.
+type Blocks<'a> = &'a mut dyn FnMut(u32) -> bool;
+
 /// The rays of which lanes say something else than the walk in place does, with what both say of the first few; and how
 /// many hit.
 fn compare(
@@ -89,7 +92,7 @@ fn compare(
         let expected = plain.closest(ray, &mut stack, &mut NoStats);
         let found = tree.closest(lanes, ray, &mut stack, &mut NoStats);
         // All that is hit is asked about, once.
-        let asked = |any: &dyn Fn(&mut dyn FnMut(u32) -> bool) -> bool| {
+        let asked = |any: &dyn Fn(Blocks<'_>) -> bool| {
             let mut asked = Vec::new();
             let is_blocked = any(&mut |index| {
                 asked.push(index);
