@@ -159,15 +159,6 @@ impl Engine for Planes12 {
         Ok(Rendered { picture: picture(&scene, &light, transfer), counts: counts(&scene) })
     }
 
-    fn render_in_lanes(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<Rendered, BlobError> {
-        // It has no other way.
-        self.render(blob, tile, progress)
-    }
-
-    fn lanes(&self) -> Option<&'static str> {
-        None
-    }
-
     fn witness(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<(Rendered, Vec<Seen>), BlobError> {
         let (scene, _) = opened(blob)?;
         let [width, height] = scene.settings().size;
