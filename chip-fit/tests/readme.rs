@@ -3,14 +3,11 @@
 //! It is skipped, with a line that says so, where nothing can be emulated, or where the compiler is another than the one that
 //! the example names: instructions and sizes are the compiler's.
 
-use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use chip_fit::core::Isa;
-use host_tools::{emulate, files};
-
-const BEGIN: &str = "<!-- generated: fit -->\n";
-const END: &str = "<!-- end of generated -->\n";
+use host_tools::emulate;
+use tests::documents::{README, check_part, document, generated, is_blessing, root};
 
 /// The scene, and the chips that are shown in full.
 const SCENE: &str = "scenes/bench-1k/scene.toml";
@@ -20,10 +17,6 @@ const CHIP: &str = "STM32F030C8";
 const FAMILIES: [&str; 6] = ["family ", "CH32V2 ", "RP2040 ", "SAMD21 ", "fe310 ", "nRF51 "];
 const MISSES: usize = 3;
 
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
-
 fn printed(program: &mut Command) -> String {
     String::from_utf8(program.output().unwrap().stdout).unwrap()
 }
@@ -32,7 +25,7 @@ fn printed(program: &mut Command) -> String {
 fn example() -> String {
     let fit = || {
         let mut command = Command::new(env!("CARGO_BIN_EXE_intray-fit"));
-        command.current_dir(root()).arg(SCENE);
+        command.current_dir(root("")).arg(SCENE);
         command
     };
     let all = printed(&mut fit());
@@ -60,19 +53,13 @@ fn the_readme_shows_what_is_printed() {
         println!("skipped: {error}");
         return;
     }
-    let path = root().join("README.md");
-    let readme = String::from_utf8(files::read(&path).unwrap()).unwrap();
-    let (before, rest) = readme.split_once(BEGIN).expect("the README has the marks");
-    let (stored, after) = rest.split_once(END).expect("the README has the marks");
     let found = example();
-    if std::env::var_os("INTRAY_BLESS").is_some() {
-        files::write_atomically(&path, format!("{before}{BEGIN}{found}{END}{after}").as_bytes()).unwrap();
-        return;
-    }
     let compiler = |text: &str| text.lines().last().map(String::from);
-    if compiler(stored) != compiler(&found) {
+    let readme = document(README);
+    let stored = generated(&readme, "fit").expect("the README has the marks");
+    if !is_blessing() && compiler(stored) != compiler(&found) {
         println!("skipped: the README's figures are those of another compiler");
         return;
     }
-    assert_eq!(stored, found, "README.md: INTRAY_BLESS=1 renews it");
+    check_part(README, "fit", &found, |a, b| a == b);
 }

@@ -2,6 +2,7 @@
 //!
 //! Results go to stdout, everything else to stderr. The exit status is 0, or 1 for a failed check, or 2 for bad input.
 
+mod board;
 mod compare;
 mod demo;
 mod emulate;
@@ -13,6 +14,8 @@ mod input;
 mod inspect;
 mod load;
 pub mod output;
+mod pixel_planes;
+mod planes;
 mod prep;
 pub mod progress;
 mod render;
@@ -54,6 +57,7 @@ enum Command {
     Fit(external::Arguments),
     Stress(stress::Arguments),
     Report(report::Arguments),
+    PixelPlanes(Box<pixel_planes::Arguments>),
     #[command(hide = true)]
     RunElf(run_elf::Arguments),
 }
@@ -73,6 +77,7 @@ pub fn run() -> ExitCode {
         Some(Command::Fit(arguments)) => return arguments.run(&external::FIT),
         Some(Command::Stress(arguments)) => stress::run(&arguments),
         Some(Command::Report(arguments)) => report::run(&arguments),
+        Some(Command::PixelPlanes(arguments)) => pixel_planes::run(&arguments),
         Some(Command::RunElf(arguments)) => run_elf::run(&arguments),
     };
     match done {

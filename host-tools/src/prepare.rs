@@ -12,6 +12,7 @@ mod paint;
 mod shared;
 mod survey;
 
+pub(crate) use header::transfer;
 pub use layout::Blob;
 pub use loss::{Keeper, Loss, losses};
 pub use paint::unplaced;

@@ -1,6 +1,7 @@
 //! Measures what the 2009 report claims, and writes docs/STUDIES.md and its plots.
 //!
 //! `studies [--quick]`: quickly is smaller, and goes to out/studies, so that the document is always of a whole run.
+//! `studies --planes` writes docs/PLANES.md, on the tracer of 1994, instead.
 
 mod study;
 
@@ -9,19 +10,21 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use host_tools::files;
+use study::planes::{Planes, SIZE as PLANES_SIZE};
 use study::{ALL, Page, Setup, document, scenes};
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    let quick = match words.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-        [] => false,
-        ["--quick"] => true,
+    let done = match words.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        [] => run(false),
+        ["--quick"] => run(true),
+        ["--planes"] => planes(),
         _ => {
-            eprintln!("usage: studies [--quick]");
+            eprintln!("usage: studies [--quick | --planes]");
             return ExitCode::from(2);
         }
     };
-    match run(quick) {
+    match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
             eprintln!("{message}");
@@ -58,5 +61,20 @@ fn run(quick: bool) -> Result<(), String> {
     }
     write("STUDIES.md".into(), &document(&setup, &pages))?;
     eprintln!("{:>4.0} s  written: {}", begin.elapsed().as_secs_f64(), root.join("STUDIES.md").display());
+    Ok(())
+}
+
+/// The tracer of 1994, which is quickly measured.
+fn planes() -> Result<(), String> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
+    let figures = Planes::measure(PLANES_SIZE);
+    let write =
+        |name: &str, bytes: &[u8]| files::write_atomically(&root.join(name), bytes).map_err(|error| error.to_string());
+    write("PLANES.md", figures.document().as_bytes())?;
+    write("studies/planes.svg", figures.plot().as_bytes())?;
+    for (picture, name) in figures.pictures.iter().zip(["literal", "nearest"]) {
+        let path = root.join(format!("studies/planes-{name}.png"));
+        picture.write_png(&path).map_err(|error| error.to_string())?;
+    }
     Ok(())
 }

@@ -7,23 +7,13 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::time::Duration;
 
 use firmware_rt::board::Board;
 use firmware_rt::hits::Way;
-use host_tools::builtin;
-use host_tools::emulate::Run;
 use host_tools::emulate::counter::Counter;
-use host_tools::emulate::firmware::Wanted;
-use host_tools::emulate::machine::Machine;
-use host_tools::engine;
-use host_tools::import::{self, Embedded};
-use host_tools::model::Model;
-use host_tools::prepare::Options;
 use serde::{Deserialize, Serialize};
-use tests::boards::boards;
-
-const LIMIT: Duration = Duration::from_secs(300);
+use tests::boards;
+use tests::chips::{Job, scene};
 
 /// What a count may grow by: a hundredth.
 const GROWTH: u64 = 100;
@@ -59,32 +49,16 @@ fn compiler() -> String {
     String::from_utf8_lossy(&output.stdout).trim().to_owned()
 }
 
-fn model(scene: &str, size: [u32; 2]) -> Model {
-    let loaded = match scene {
-        "built-in" => import::load_from(&Embedded(builtin::FILES), "scene.toml"),
-        _ => import::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenes/{scene}/scene.toml"))),
-    };
-    let mut model = loaded.expect("a scene of the repository").model;
-    model.render.size = size;
-    model
-}
-
 fn counted(board: &'static Board, counter: &Counter) -> BTreeMap<String, u64> {
-    let count = |(scene, kernel, size, hits): (&str, &str, [u32; 2], Option<Way>)| {
-        let engine = engine::by_name(kernel).expect("a kernel of this name");
-        let blob = engine.prepare(&model(scene, size), &Options::default()).expect("it fits").blob;
-        let wanted = Wanted { board, blob: blob.bytes(), hits, count: false };
-        let elf = wanted.provide().expect("it can be built");
-        let run = Run { board, elf: &elf, blob: Some(blob.bytes()), counter: Some(counter), limit: LIMIT };
-        let outcome = run.perform(&mut Vec::new()).expect("it goes well");
-        let instructions = outcome.counts.expect("they were counted").instructions;
+    let count = |(name, kernel, size, hits): (&str, &str, [u32; 2], Option<Way>)| {
+        let instructions = Job::new(board, &scene(name, size), kernel, hits).counts(counter).instructions;
         let [width, height] = size;
         let what = match hits {
             None => "",
             Some(Way::Single) => ", hits",
             Some(Way::Tile) => ", hits of tiles",
         };
-        let name = format!("{scene} {width}x{height} by {kernel}{what}");
+        let name = format!("{name} {width}x{height} by {kernel}{what}");
         println!("{} {name}: {instructions}, {} a pixel", board.name, instructions / u64::from(width * height));
         (name, instructions)
     };
@@ -108,11 +82,8 @@ fn complaints(board: &str, found: &BTreeMap<String, u64>, expected: &BTreeMap<St
 #[test]
 fn nothing_takes_more_instructions_than_it_did() {
     let mut found = Counts { compiler: compiler(), ..Counts::default() };
-    for board in boards() {
-        match Machine::of(board).map_err(|error| error.to_string()).and_then(|machine| Counter::provide(&machine)) {
-            Ok(counter) => drop(found.boards.insert(board.name.into(), counted(board, &counter))),
-            Err(reason) => println!("skipped {}: {reason}", board.name),
-        }
+    for (board, counter) in boards::counted() {
+        found.boards.insert(board.name.into(), counted(board, &counter));
     }
     if std::env::var_os("INTRAY_BLESS").is_some() {
         let text = toml::to_string(&found).expect("counts are TOML");

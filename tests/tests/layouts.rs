@@ -17,7 +17,7 @@ use host_tools::import;
 use host_tools::model::Model;
 use host_tools::prepare::{Blob, Options, tree_for};
 use tests::boards::counted;
-use tests::readme::{check_part, compiler, generated, is_blessing, readme, root};
+use tests::documents::{README, check_part, compiler, document, generated, is_blessing, root};
 
 const LIMIT: Duration = Duration::from_secs(600);
 
@@ -90,7 +90,7 @@ fn row(model: &Model, boards: &[(&'static Board, host_tools::emulate::counter::C
 #[test]
 fn the_readme_shows_what_layouts_take() {
     let boards: Vec<_> = counted().collect();
-    let is_other = !generated(&readme(), "layouts").expect("the README has the marks").contains(&compiler());
+    let is_other = !generated(&document(README), "layouts").expect("the README has the marks").contains(&compiler());
     if boards.len() < 2 || (is_other && !is_blessing()) {
         println!("skipped the layouts' figures: they are those of another compiler, or of chips that are not here");
         return;
@@ -123,5 +123,5 @@ fn the_readme_shows_what_layouts_take() {
         blob.bytes().len(),
         compiler()
     );
-    check_part("layouts", &text, |a, b| a == b);
+    check_part(README, "layouts", &text, |a, b| a == b);
 }

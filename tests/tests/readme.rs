@@ -26,7 +26,7 @@ use host_tools::render::Rendered;
 use host_tools::report::row::{Cost, Measured, Outcome, Point, Row, Study};
 use host_tools::report::{self, Report, page};
 use host_tools::{builtin, files};
-use tests::readme::{check_part, compiler, generated, is_blessing, readme, root};
+use tests::documents::{README, check_part, compiler, document, generated, is_blessing, root};
 
 /// Checks a picture of the README, or renews it.
 fn check_picture(name: &str, picture: &Picture) {
@@ -68,7 +68,7 @@ fn the_readme_shows_what_the_program_makes() {
         }
     }
 
-    check_part("figures", &table, |stored, found| stored == found);
+    check_part(README, "figures", &table, |stored, found| stored == found);
     check_picture("docs/demo.png", &shown.expect("there are kernels"));
 }
 
@@ -86,7 +86,7 @@ fn the_readme_says_what_needs_take() {
         println!("skipped: {error}");
         return;
     }
-    let is_other = !generated(&readme(), "needs").expect("the README has the marks").contains(&compiler());
+    let is_other = !generated(&document(README), "needs").expect("the README has the marks").contains(&compiler());
     if is_other && !is_blessing() {
         println!("skipped the sizes of needs: they are those of another compiler");
         return;
@@ -118,7 +118,7 @@ fn the_readme_says_what_needs_take() {
             table += &sizes_row(&need.to_string(), &mut added);
         }
     }
-    check_part("needs", &table, |stored, found| stored == found);
+    check_part(README, "needs", &table, |stored, found| stored == found);
 }
 
 /// The report of the gallery, as it is stored.
@@ -149,7 +149,7 @@ fn the_readme_says_what_the_report_says() {
     assert!(!of_all.is_empty() && of_scenes.len() > 1, "the gallery has several scenes");
     let (_, built_in_scene) = of_scenes.iter().find(|(scene, _)| scene == "demo").expect("the built-in scene");
     let lines: String = built_in_scene.iter().chain(&of_all).map(|sentence| format!("- {sentence}\n")).collect();
-    check_part("headline", &lines, |stored, found| stored == found);
+    check_part(README, "headline", &lines, |stored, found| stored == found);
 
     let model = built_in(CHIP_SIZE);
     for engine in ENGINES {
@@ -246,7 +246,7 @@ fn the_readme_shows_what_the_chips_make() {
          bytes |\n| --- | --- | --- | --- | --- | --- | --- | --- |\n",
         compiler()
     );
-    let is_other = !generated(&readme(), "chips").expect("the README has the marks").contains(&compiler());
+    let is_other = !generated(&document(README), "chips").expect("the README has the marks").contains(&compiler());
     if is_other && !is_blessing() {
         println!("skipped the chips' figures: they are those of another compiler");
         return;
@@ -273,7 +273,7 @@ fn the_readme_shows_what_the_chips_make() {
         threads.into_iter().flat_map(|thread| thread.join().expect("pictures like the host's")).collect()
     });
     table.extend(made.iter().map(|(row, _)| row.as_str()));
-    check_part("chips", &table, is_same_but_for_paths);
+    check_part(README, "chips", &table, is_same_but_for_paths);
     check_picture("docs/host.png", &all[0].2.picture);
     check_picture("docs/chip-microbit.png", &made[0].1);
 }

@@ -16,6 +16,7 @@ use host_tools::tree::TreeOptions;
 use study::degenerates::{self, Degenerates};
 use study::edge_shift::{self, EdgeShift, Thinnest};
 use study::leaf_threshold::{LeafThreshold, Row};
+use study::planes::{self, Planes};
 use study::scenes::{self, Subject};
 use study::seams::{self, Seams};
 use study::text::Verdict;
@@ -280,4 +281,24 @@ fn the_document_is_of_the_scenes_as_they_are() {
     let claims = [c_and_d::CAndD::CLAIM, LeafThreshold::CLAIM, leaf_bounds::LeafBounds::CLAIM, epsilon::Epsilon::CLAIM];
     let claims = claims.into_iter().chain([EdgeShift::CLAIM, Seams::CLAIM, Degenerates::CLAIM]);
     assert!(claims.into_iter().all(|claim| text.contains(claim)), "docs/STUDIES.md: `cargo xtask studies` renews it");
+}
+
+#[test]
+fn the_document_on_the_tracer_of_1994_is_of_the_tracer_as_it_is() {
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
+    let renew = "renew it with `cargo xtask planes`";
+    let read = |name: &str| String::from_utf8(files::read(&docs.join(name)).unwrap()).unwrap();
+    let figures = Planes::measure(planes::SIZE);
+    assert!(tables_are_whole(&figures.document()));
+    assert_eq!(read("PLANES.md"), figures.document(), "{renew}");
+    assert_eq!(read("studies/planes.svg"), figures.plot(), "{renew}");
+    for (picture, name) in figures.pictures.iter().zip(["literal", "nearest"]) {
+        let path = docs.join(format!("studies/planes-{name}.png"));
+        assert_eq!(host_tools::picture::Picture::read_png(&path).unwrap(), *picture, "{name}: {renew}");
+    }
+    assert!(figures.verdicts().iter().all(|verdict| verdict.holds));
+    // A tracer whose reflections are wrong with 6 bits too bears nothing out.
+    let mut wrong = figures;
+    wrong.rows.iter_mut().for_each(|row| (row.wrong, row.up_to_2) = (row.rays, 0));
+    assert!(wrong.verdicts().iter().all(|verdict| !verdict.holds));
 }

@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::builder::PossibleValuesParser;
-use firmware_rt::board::{self, BOARDS, Board};
+use firmware_rt::board::Board;
 use firmware_rt::build::Traits;
 use firmware_rt::hits::Way;
 use indicatif::ProgressBar;
@@ -15,7 +14,7 @@ use super::failure::{Failure, warn};
 use super::help::smaller;
 use super::input::SceneArguments;
 use super::load::Scene;
-use super::{output, progress};
+use super::{board, output, progress};
 use crate::emulate::breakdown::Breakdown;
 use crate::emulate::counter::{Counter, Counts};
 use crate::emulate::elf::Elf;
@@ -31,8 +30,8 @@ pub(super) struct Arguments {
     scene: SceneArguments,
 
     /// The board
-    #[arg(long, value_parser = PossibleValuesParser::new(BOARDS.map(|board| board.name)))]
-    board: String,
+    #[arg(long, value_parser = board::named())]
+    board: &'static Board,
 
     /// Where the picture goes
     #[arg(short, value_name = "PNG")]
@@ -113,7 +112,7 @@ struct Report {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     files::check_writable(&arguments.output)?;
-    let board = board::by_name(&arguments.board).ok_or_else(|| Failure::input("no such board"))?;
+    let board = arguments.board;
     let machine = Machine::of(board)?;
     let scene = arguments.scene.load_for_chip()?;
     let (header, sizes) = scene.engine.inspect(scene.blob.bytes())?;

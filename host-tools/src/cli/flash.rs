@@ -3,8 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use clap::builder::PossibleValuesParser;
-use firmware_rt::board::{self, BOARDS, Board};
+use firmware_rt::board::Board;
 use firmware_rt::build::Traits;
 use serde::Serialize;
 
@@ -13,7 +12,7 @@ use super::failure::Failure;
 use super::help::smaller;
 use super::input::SceneArguments;
 use super::load::Scene;
-use super::{output, progress};
+use super::{board, output, progress};
 use crate::emulate::elf::Elf;
 use crate::emulate::firmware::{self, Transport, Wanted};
 use crate::emulate::{Outcome, room};
@@ -27,8 +26,8 @@ pub(super) struct Arguments {
     scene: SceneArguments,
 
     /// The board
-    #[arg(long, value_parser = PossibleValuesParser::new(BOARDS.map(|board| board.name)))]
-    board: String,
+    #[arg(long, value_parser = board::named())]
+    board: &'static Board,
 
     /// Where the picture goes [default: it is received and not kept]
     #[arg(short, value_name = "PNG")]
@@ -84,7 +83,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     for path in [&arguments.output, &arguments.uf2].into_iter().flatten() {
         files::check_writable(path)?;
     }
-    let board = board::by_name(&arguments.board).ok_or_else(|| Failure::input("no such board"))?;
+    let board = arguments.board;
     let family = match (&arguments.uf2, board.uf2_family) {
         (None, _) => None,
         (Some(path), Some(family)) => Some((path.as_path(), family)),

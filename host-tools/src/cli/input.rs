@@ -14,6 +14,7 @@ use crate::engine::ENGINES;
 use crate::import::{GREATEST_DEPTH, MOST_SAMPLES};
 use crate::model::Format;
 use crate::picture::{SIZES, parse_size, size_is_allowed};
+use crate::planes;
 use crate::textures::Texels;
 
 /// In a kernel's place: the mesh is to say which.
@@ -27,7 +28,7 @@ pub struct SceneArguments {
 
     /// The arithmetic, or `auto` for the cheapest that the mesh stands on well; of a blob, its own [default: exact29, on a
     /// chip exact14, to make a blob auto]
-    #[arg(long, value_parser = PossibleValuesParser::new(ENGINES.map(|engine| engine.name()).into_iter().chain([AUTO])))]
+    #[arg(long, value_parser = PossibleValuesParser::new(ENGINES.map(|engine| engine.name()).into_iter().chain([planes::NAME, AUTO])))]
     pub(super) kernel: Option<String>,
 
     /// The picture's size in pixels, instead of the scene's

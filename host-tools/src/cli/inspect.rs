@@ -2,17 +2,16 @@
 
 use std::time::Duration;
 
-use clap::builder::PossibleValuesParser;
 use core_rt::arithmetic::Arithmetic;
 use core_rt::blob::Header;
-use firmware_rt::board::{self, BOARDS, Board};
+use firmware_rt::board::Board;
 use firmware_rt::build::Traits;
 use serde::Serialize;
 
 use super::failure::{Failure, warn};
 use super::input::SceneArguments;
 use super::load::Scene;
-use super::{output, progress};
+use super::{board, output, progress};
 use crate::emulate::costs::{self, Costs};
 use crate::emulate::counter::Counter;
 use crate::emulate::machine::Machine;
@@ -32,8 +31,8 @@ pub(super) struct Arguments {
     scene: SceneArguments,
 
     /// Say what each need costs on a board: builds its firmware several times, and counts in QEMU
-    #[arg(long, value_parser = PossibleValuesParser::new(BOARDS.map(|board| board.name)))]
-    board: Option<String>,
+    #[arg(long, value_parser = board::named())]
+    board: Option<&'static Board>,
 
     /// Print one JSON object
     #[arg(long)]
@@ -103,10 +102,9 @@ struct OnBoard {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let board = arguments.board.as_deref().and_then(board::by_name);
     let (scene, model) = arguments.scene.load_with_model()?;
     let (header, sizes) = scene.engine.inspect(scene.blob.bytes())?;
-    let costs = board.map(|board| measured(arguments, board, &scene, &header)).transpose()?;
+    let costs = arguments.board.map(|board| measured(arguments, board, &scene, &header)).transpose()?;
     let (asked, bearers) = scene.engine.asked(scene.blob.bytes())?;
     let named = |number: u32| {
         let name = model.as_ref().and_then(|model| material_of(model, *bearers.get(&number)?));

@@ -18,6 +18,7 @@ use crate::files;
 use crate::import::{self, Imported};
 use crate::model::Model;
 use crate::picture::{SIZES, size_is_allowed};
+use crate::planes;
 use crate::prepare::{Blob, Degenerates, Options, losses, tree_for, unplaced};
 use crate::textures;
 use crate::tree::TreeOptions;
@@ -102,6 +103,11 @@ impl SceneArguments {
 
     /// Reads the scene and prepares it, for the cheapest kernel that it stands on well where none is given.
     fn load_by(&self, engine: Option<&'static dyn Engine>) -> Result<(Scene, Option<Model>), Failure> {
+        if self.is_planes() {
+            return Err(Failure::input(
+                "planes12 makes pictures by `render`, and has no blob yet; choose another kernel",
+            ));
+        }
         if !self.is_model() {
             return Ok((self.load_blob()?, None));
         }
@@ -110,6 +116,32 @@ impl SceneArguments {
         let engine = choice.as_ref().map(|choice| choice.engine).or(engine).unwrap_or(ENGINES[0]);
         let scene = self.prepare(&model, engine, &self.options())?;
         Ok((Scene { choice: choice.map(|choice| choice.to_string()), ..scene }, Some(model)))
+    }
+
+    /// Whether the kernel is the one that has no blobs.
+    pub(super) fn is_planes(&self) -> bool {
+        self.kernel.as_deref() == Some(planes::NAME)
+    }
+
+    /// Reads a model for that kernel, which has neither a tree nor samples.
+    pub(super) fn model_for_planes(&self) -> Result<Model, Failure> {
+        let path = self.scene.display();
+        if !self.is_model() {
+            return Err(Failure::input(format!("{path}: planes12 has no blobs; give a scene.toml or an .obj")));
+        }
+        if self.leaf.is_some()
+            || self.prefer.is_some()
+            || self.grid_bits.is_some()
+            || self.samples.is_some()
+            || self.format.is_some()
+            || self.knobs.any()
+        {
+            return Err(Failure::input(
+                "--leaf, --prefer, --grid-bits, --samples, --format and the knobs of arithmetic are other kernels'; planes12 has \
+                 none of them",
+            ));
+        }
+        self.model()
     }
 
     /// Whether the scene is not a blob, by its name.
@@ -129,7 +161,7 @@ impl SceneArguments {
     }
 
     /// Reads a model, with the size and the number of triangles that are asked for.
-    fn model(&self) -> Result<Model, Failure> {
+    pub(super) fn model(&self) -> Result<Model, Failure> {
         let Imported { mut model, warnings } = import::load(&self.scene)?;
         warnings.iter().for_each(warn);
         if let Some(size) = self.size {

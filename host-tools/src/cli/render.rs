@@ -56,6 +56,9 @@ struct Rays {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     files::check_writable(&arguments.output)?;
+    if arguments.scene.is_planes() {
+        return super::planes::render(&arguments.scene, &arguments.threads, &arguments.output, arguments.json);
+    }
     let scene = arguments.scene.load()?;
     let pool = arguments.threads.pool()?;
     let begin = Instant::now();

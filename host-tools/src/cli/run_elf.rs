@@ -3,12 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use clap::builder::PossibleValuesParser;
-use firmware_rt::board::{self, BOARDS, Region};
+use firmware_rt::board::{Board, Region};
 
 use super::emulate::Shown;
 use super::failure::Failure;
-use super::{output, progress};
+use super::{board, output, progress};
 use crate::emulate::elf::Elf;
 use crate::emulate::machine::Machine;
 use crate::emulate::{EmulateError, Run, room};
@@ -21,8 +20,8 @@ pub(super) struct Arguments {
     elf: PathBuf,
 
     /// The board
-    #[arg(long, value_parser = PossibleValuesParser::new(BOARDS.map(|board| board.name)))]
-    board: String,
+    #[arg(long, value_parser = board::named())]
+    board: &'static Board,
 
     /// What to put into the blob's place [default: what the firmware has there]
     #[arg(long)]
@@ -38,7 +37,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let board = board::by_name(&arguments.board).ok_or_else(|| Failure::input("no such board"))?;
+    let board = arguments.board;
     let path = arguments.output.clone().unwrap_or_else(|| arguments.elf.with_extension("png"));
     files::check_writable(&path)?;
     let failure = |error: EmulateError| {

@@ -146,7 +146,7 @@ pub(super) const fn format(format: model::Format) -> Format {
 }
 
 /// How pixels are encoded.
-pub(super) const fn transfer(transfer: model::Transfer) -> Transfer {
+pub(crate) const fn transfer(transfer: model::Transfer) -> Transfer {
     match transfer {
         model::Transfer::Srgb => Transfer::Srgb,
         model::Transfer::Linear => Transfer::Linear,

@@ -56,7 +56,7 @@ fn numbers_out_of_range() {
 #[test]
 fn kernels_that_do_not_exist() {
     // Such as: exact29, exact14.
-    let known = format!("{}, auto", ENGINES.map(|engine| engine.name()).join(", "));
+    let known = format!("{}, planes12, auto", ENGINES.map(|engine| engine.name()).join(", "));
     refused(
         "render scene.obj --kernel sixteen -o out.png",
         &format!("invalid value 'sixteen' for '--kernel <KERNEL>'\n  [possible values: {known}]"),

@@ -13,6 +13,7 @@ mod good;
 mod kernels;
 mod outputs;
 mod pictures;
+mod planes;
 mod rays;
 mod report;
 mod scene_files;

@@ -7,6 +7,39 @@
 //! `unsafe` is only the promise that the two names which tools look for are no one else's.
 #![no_std]
 
+use core::convert::Infallible;
+use core::hint::black_box;
+
+use core_rt::bvh::Waiting;
+use core_rt::profile::Profile;
+use core_rt::render::{Sink, Tile, Workspace, render};
+use core_rt::scene::Scene;
+use core_rt::stats::NoStats;
+use core_rt::whitted::Branch;
+
+/// Takes pixels that must be made, since it may look at them.
+struct Somewhere;
+
+impl Sink for Somewhere {
+    type Error = Infallible;
+
+    fn tile(&mut self, tile: Tile, pixels: &[u8]) -> Result<(), Infallible> {
+        black_box((tile, pixels));
+        Ok(())
+    }
+}
+
+/// Renders what a scene holds, from storage for `DEPTH` nodes and `BRANCHES` rays.
+#[inline(always)]
+pub fn draw<P: Profile, const DEPTH: usize, const BRANCHES: usize>(scene: &Scene<'_, P>) {
+    let mut stack = heapless::Vec::<Waiting<P::Kernel>, DEPTH>::new();
+    let mut branches = heapless::Vec::<Branch<P::Kernel>, BRANCHES>::new();
+    // Of any length, for all that the compiler knows.
+    let (hits, pixels) = (black_box::<&mut [u32]>(&mut []), black_box::<&mut [u8]>(&mut []));
+    let mut workspace = Workspace { stack: &mut stack, branches: &mut branches, hits, pixels };
+    let _ = black_box(render(scene, [16; 2], &mut workspace, &mut Somewhere, &mut NoStats));
+}
+
 /// Where every panic ends. It has a name of its own, and is never inlined: a program without this symbol cannot panic.
 #[cfg(target_os = "none")]
 // SAFETY: nothing else is called this.

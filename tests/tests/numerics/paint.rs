@@ -9,7 +9,8 @@ use fixed::types::I2F14;
 use fixed::types::extra::{U30, U31};
 use tests::random::SplitMix64;
 
-use super::{exactly, hits, within_tolerance};
+use super::within_tolerance;
+use crate::hits::{exactly, hits};
 
 /// Numbers at corners, of any magnitude below the end, close together or far apart.
 fn corners(random: &mut SplitMix64) -> [i32; 3] {

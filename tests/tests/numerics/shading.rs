@@ -5,6 +5,7 @@ use core_rt::colour::{Colour, Radiance, Transfer};
 use core_rt::space::{Grid14, Grid29, GridQ31, Space};
 use float_rt::FloatSpace;
 use glam::DVec3;
+use tests::documents::check_part;
 use tests::random::SplitMix64;
 
 /// A law of highlights; `None` for matt.
@@ -165,7 +166,7 @@ fn table() -> (String, Vec<[(f64, f64); 4]>) {
 fn with_hits_given_exactly() {
     let (text, rows) = table();
     println!("{text}");
-    super::in_the_document("shading", &text);
+    check_part(super::SHADING, "shading", &text, |a, b| a == b);
     for [narrow, wide, report, single] in rows {
         assert!(wide.0 < 0.5 && report.0 < 0.5 && single.0 < 0.5 && narrow.0 < 8.0, "{narrow:?} {wide:?}");
         assert!(wide.1 < 10.0 && narrow.1 > wide.1, "14 bits are fewer: {narrow:?} {wide:?}");

@@ -30,13 +30,15 @@ pub(crate) fn steps(long: bool) -> Vec<Step> {
         Step::new("lints", Task::new("cargo clippy --workspace --all-targets -- -D warnings")).needing(&[CLIPPY]),
         Step::new(
             "documentation",
-            Task::new("cargo doc --no-deps -p core-rt -p float-rt -p host-tools -p chip-fit")
-                .with("RUSTDOCFLAGS", "-D warnings"),
+            Task::new(
+                "cargo doc --no-deps -p core-rt -p float-rt -p host-tools -p chip-fit -p planes-rt -p planes-simd",
+            )
+            .with("RUSTDOCFLAGS", "-D warnings"),
         ),
         Step::new(
             "the cores for the chips",
             Task::new(
-                "cargo build -p core-rt -p float-rt --release --target thumbv6m-none-eabi \
+                "cargo build -p core-rt -p float-rt -p planes-rt --release --target thumbv6m-none-eabi \
                  --target riscv32imac-unknown-none-elf",
             ),
         )
@@ -62,7 +64,7 @@ pub(crate) fn steps(long: bool) -> Vec<Step> {
     steps.extend([
         Step::new(
             "unit tests, debug",
-            test("cargo test -p core-rt -p firmware-rt -p float-rt -p host-tools -p qemu-plugin -p xtask"),
+            test("cargo test -p core-rt -p firmware-rt -p float-rt -p host-tools -p planes-rt -p qemu-plugin -p xtask"),
         ),
         Step::new("goldens, debug", Task::new("cargo test -p tests --test goldens")),
         Step::new("ImageMagick's counts", Task::new("cargo test -p tests --profile checked --test imagemagick"))

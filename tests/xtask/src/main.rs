@@ -22,13 +22,15 @@ usage: cargo xtask VERB
   test [--long]        runs every check, after installing what they need
   fuzz [--seconds N]   fuzzes the blob and the importers, N seconds each (60)
   studies [--quick]    measures the 2009 report's claims and writes docs/STUDIES.md; quickly, and smaller, to out/studies
+  planes               measures the tracer of 1994 and writes docs/PLANES.md
   bless                renews the goldens and the figures of documents, and shows which changed
+  speed [--quick]      compares chips by instructions and hosts by ratios, and writes docs/SPEED.md; quickly to out/speed
   report               measures the gallery and writes docs/report, and the README's part of it
   demo-scene           writes scenes/demo anew
   bench-scene          writes scenes/bench-1k anew";
 
 /// The tests whose files are renewed.
-const BLESSED: [&str; 9] = [
+const BLESSED: [&str; 11] = [
     "bench_scene",
     "goldens",
     "machines",
@@ -36,6 +38,8 @@ const BLESSED: [&str; 9] = [
     "instructions",
     "numerics",
     "gallery",
+    "layouts",
+    "raystones",
     "stress",
     "readme",
 ];
@@ -47,6 +51,8 @@ enum Verb {
     Test { long: bool },
     Fuzz { seconds: u32 },
     Studies { quick: bool },
+    Speed { quick: bool },
+    Planes,
     Bless,
     Report,
     DemoScene,
@@ -61,8 +67,11 @@ impl Verb {
             ["test", "--long"] => Some(Self::Test { long: true }),
             ["fuzz"] => Some(Self::Fuzz { seconds: 60 }),
             ["fuzz", "--seconds", seconds] => Some(Self::Fuzz { seconds: seconds.parse().ok()? }),
+            ["speed"] => Some(Self::Speed { quick: false }),
+            ["speed", "--quick"] => Some(Self::Speed { quick: true }),
             ["studies"] => Some(Self::Studies { quick: false }),
             ["studies", "--quick"] => Some(Self::Studies { quick: true }),
+            ["planes"] => Some(Self::Planes),
             ["bless"] => Some(Self::Bless),
             ["report"] => Some(Self::Report),
             ["demo-scene"] => Some(Self::DemoScene),
@@ -105,10 +114,19 @@ fn perform(verb: Verb) -> Result<(), String> {
             let skipped = run(&fuzz::steps(seconds, &[tool::NIGHTLY, tool::CARGO_FUZZ_INSTALLED]))?;
             if skipped == 0 { Ok(()) } else { Err("nothing was fuzzed".into()) }
         }
+        Verb::Speed { quick } => {
+            let option = if quick { " -- --quick" } else { "" };
+            let line = format!("cargo run --quiet --release -p tests --bin speed{option}");
+            run(&[Step::new("speed", Task::new(&line))]).map(drop)
+        }
         Verb::Studies { quick } => {
             let option = if quick { " -- --quick" } else { "" };
             let line = format!("cargo run --quiet --release -p tests --bin studies{option}");
             run(&[Step::new("studies", Task::new(&line))]).map(drop)
+        }
+        Verb::Planes => {
+            let line = "cargo run --quiet --release -p tests --bin studies -- --planes";
+            run(&[Step::new("the tracer of 1994", Task::new(line))]).map(drop)
         }
         Verb::Bless => run(&[
             Step::new(
@@ -171,7 +189,9 @@ mod tests {
         assert_eq!(Verb::parse(&["test"]), Some(Verb::Test { long: false }));
         assert_eq!(Verb::parse(&["test", "--long"]), Some(Verb::Test { long: true }));
         assert_eq!(Verb::parse(&["fuzz", "--seconds", "5"]), Some(Verb::Fuzz { seconds: 5 }));
+        assert_eq!(Verb::parse(&["planes"]), Some(Verb::Planes));
         assert_eq!(Verb::parse(&["report"]), Some(Verb::Report));
+        assert_eq!(Verb::parse(&["speed", "--quick"]), Some(Verb::Speed { quick: true }));
         assert_eq!(Verb::parse(&["studies", "--quick"]), Some(Verb::Studies { quick: true }));
         for wrong in [
             &[][..],

@@ -1,4 +1,4 @@
-//! The generated parts of the README: found by their marks, compared, or renewed with `INTRAY_BLESS=1`.
+//! The generated parts of the project's documents: found by their marks, compared, or renewed with `INTRAY_BLESS=1`.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -8,8 +8,11 @@ use host_tools::files;
 
 const END: &str = "<!-- end of generated -->\n";
 
-/// The README is written by one test at a time.
-static README: Mutex<()> = Mutex::new(());
+/// The README, from the root of the project.
+pub const README: &str = "README.md";
+
+/// A document is written by one test at a time.
+static WRITING: Mutex<()> = Mutex::new(());
 
 /// The path of a file of the project.
 #[must_use]
@@ -37,13 +40,13 @@ fn replaced(text: &str, part: &str, figures: &str) -> Option<String> {
     Some(format!("{before}{begin}{figures}{END}{after}"))
 }
 
-/// The README as it is.
+/// A document as it is.
 ///
 /// # Panics
 /// If it cannot be read.
 #[must_use]
-pub fn readme() -> String {
-    String::from_utf8(files::read(&root("README.md")).expect("a README")).expect("it is text")
+pub fn document(name: &str) -> String {
+    String::from_utf8(files::read(&root(name)).expect("a document")).expect("it is text")
 }
 
 /// Whether figures are to be renewed and not compared.
@@ -52,19 +55,19 @@ pub fn is_blessing() -> bool {
     std::env::var_os("INTRAY_BLESS").is_some()
 }
 
-/// Checks a generated part of the README, or renews it.
+/// Checks a generated part of a document, or renews it.
 ///
 /// # Panics
 /// If it is another.
-pub fn check_part(part: &str, figures: &str, is_same: impl Fn(&str, &str) -> bool) {
-    let _lock = README.lock().expect("whoever had it let it go");
-    let readme = readme();
-    let expected = replaced(&readme, part, figures).expect("the README has the marks");
+pub fn check_part(name: &str, part: &str, figures: &str, is_same: impl Fn(&str, &str) -> bool) {
+    let _lock = WRITING.lock().expect("whoever had it let it go");
+    let text = document(name);
+    let expected = replaced(&text, part, figures).expect("the document has the marks");
     if is_blessing() {
-        files::write_atomically(&root("README.md"), expected.as_bytes()).expect("it can be written");
+        files::write_atomically(&root(name), expected.as_bytes()).expect("it can be written");
     } else {
-        let stored = generated(&readme, part).unwrap_or_default();
-        assert!(is_same(stored, figures), "README.md: INTRAY_BLESS=1 renews the figures\n{stored}\n{figures}");
+        let stored = generated(&text, part).unwrap_or_default();
+        assert!(is_same(stored, figures), "{name}: INTRAY_BLESS=1 renews the figures\n{stored}\n{figures}");
     }
 }
 

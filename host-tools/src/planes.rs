@@ -1,0 +1,81 @@
+//! Pictures by the tracer of Pixel-Planes 5 ([`planes_rt`]): a model's spheres in its words, and all cores.
+//!
+//! What it knows is less than what other kernels do: spheres, one light without shadows, diffuse and mirrored shares. The
+//! rest of a model is refused where leaving it out would show another scene, and said where it shows the same one plainer.
+
+pub mod scene;
+
+use core_rt::colour::{Colour, Radiance, Rgb16};
+use planes_rt::colour::Light;
+use planes_rt::pixel;
+use planes_rt::scene::Scene;
+use planes_simd::Lockstep;
+use rayon::prelude::*;
+
+use crate::model;
+use crate::picture::Picture;
+use crate::prepare::transfer;
+use crate::render::Progress;
+
+/// The kernel's name.
+pub const NAME: &str = "planes12";
+
+/// Lanes of a tile.
+const LANES: usize = 16;
+/// How many of them are side by side.
+const ACROSS: u16 = 4;
+
+/// How pixels are taken. Pictures are the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// One after the other.
+    Pixels,
+    /// Tiles in lockstep.
+    Lanes(Lockstep),
+}
+
+/// The light of all pixels, row by row, on the threads of the current rayon pool.
+pub fn light(scene: &Scene<'_>, way: Way, progress: Progress<'_>) -> Vec<Light> {
+    let [width, height] = scene.settings().size;
+    let rows = if way == Way::Pixels { 1 } else { LANES as u16 / ACROSS };
+    let mut light = vec![[0; 3]; usize::from(width) * usize::from(height)];
+    let bands = light.par_chunks_mut(usize::from(width) * usize::from(rows));
+    (0..height).into_par_iter().step_by(rows.into()).zip(bands).for_each(|(y, band)| {
+        match way {
+            Way::Pixels => (0..width).zip(&mut *band).for_each(|(x, light)| *light = pixel::trace(scene, [x, y])),
+            Way::Lanes(unit) => tiles(scene, unit, y, band),
+        }
+        progress(band.len() as u64);
+    });
+    light
+}
+
+/// Rows of pixels from `y` on, as many as a tile has or as are left.
+fn tiles(scene: &Scene<'_>, unit: Lockstep, y: u16, band: &mut [Light]) {
+    let width = scene.settings().size[0];
+    for x in (0..width).step_by(ACROSS.into()) {
+        let pixels: [[u16; 2]; LANES] =
+            std::array::from_fn(|lane| [x + lane as u16 % ACROSS, y + lane as u16 / ACROSS]);
+        for ([column, row], light) in pixels.into_iter().zip(unit.trace(scene, &pixels)) {
+            let place = usize::from(row - y) * usize::from(width) + usize::from(column);
+            if column < width
+                && let Some(pixel) = band.get_mut(place)
+            {
+                *pixel = light;
+            }
+        }
+    }
+}
+
+/// Light as a picture.
+#[must_use]
+pub fn picture(scene: &Scene<'_>, light: &[Light], encoding: model::Transfer) -> Picture {
+    let [width, height] = scene.settings().size;
+    let mut picture = Picture::new(width.into(), height.into());
+    for (pixel, light) in picture.pixels_mut().iter_mut().zip(light) {
+        // 12 bits in 16, so that white stays white.
+        let mantissa = light.map(|channel| channel << 4 | channel >> 8);
+        *pixel = Rgb16::constant(&Radiance { mantissa, exponent: 0 }).encode(transfer(encoding));
+    }
+    picture
+}

@@ -1,0 +1,25 @@
+//! The real-time ray tracer of 1994: spheres in words of 12 and 24 bits, one processor a pixel, all in lockstep.
+//!
+//! L. Kesteloot, "Real Time Ray Tracing on Pixel-Planes 5" (University of North Carolina, 1994). No float, no allocation, no
+//! panic, no I/O, no `unsafe`; the same bits on every machine.
+//!
+//! # Numbers
+//! [`widths`] are the words and what happens beyond them, [`root`] is the square root, [`colour`] light.
+//!
+//! # A scene
+//! A [`scene::Scene`] is spheres, one light and a [`camera`], checked once against its words.
+//!
+//! # Tracing
+//! `step` has what a processor does with one ray and one sphere. [`pixel`] does it for one pixel, and skips what is not
+//! needed; [`lanes`] does it for a tile of pixels at once, and skips what none of them needs. The pictures are the same.
+#![no_std]
+#![forbid(unsafe_code)]
+
+pub mod camera;
+pub mod colour;
+pub mod lanes;
+pub mod pixel;
+pub mod root;
+pub mod scene;
+mod step;
+pub mod widths;
