@@ -49,7 +49,7 @@ pub(crate) fn arriving<P: Profile>(
             P::Kernel::leaving(scene.settings, from, towards, hit)
         };
         let blocked = shadow.is_some_and(|ray| {
-            scene.bvh.any(&ray, stack, stats, |between| {
+            scene.hits().any(&ray, stack, stats, |between| {
                 if P::NEEDS.has(Need::TintedShadow) {
                     tint = product(&tint, &passed(scene, &ray, hit, between, is_point.then_some(light.place)));
                     tint == [0; 3]

@@ -8,6 +8,7 @@ use core::marker::PhantomData;
 
 use serde::{Deserialize, Serialize};
 
+use crate::bvh::{InPlace, Walk};
 use crate::kernel::Kernel;
 
 /// One thing that a scene may need.
@@ -285,6 +286,8 @@ pub enum Prefer {
 pub trait Profile: Copy + Debug + Default + Send + Sync + 'static {
     /// The arithmetic.
     type Kernel: Kernel;
+    /// How rays find what they hit.
+    type Walk<'a>: Walk<Self>;
     /// Everything that a scene under this profile may need.
     const NEEDS: Needs;
     /// What it is compiled for.
@@ -297,5 +300,6 @@ pub struct Full<K>(PhantomData<K>);
 
 impl<K: Kernel> Profile for Full<K> {
     type Kernel = K;
+    type Walk<'a> = InPlace;
     const NEEDS: Needs = Needs::ALL;
 }

@@ -178,7 +178,7 @@ pub fn render_tile<'w, P: Profile>(
     if !P::NEEDS.has(Need::Supersampling) {
         // What pixels are written to is room for depths before.
         let ray = |[x, y]: [u16; 2]| scene.primary(&scene.camera, x, y);
-        scene.bvh.closest_tile(scene.drawn_from(), ray, tile, hits, room, stack, stats);
+        scene.hits().closest_tile(scene.drawn_from(), ray, tile, hits, room, stack, stats);
     }
     let pixels = room.get_mut(..count * format.bytes()).unwrap_or_default();
     if P::NEEDS.has(Need::Supersampling) {
@@ -198,7 +198,7 @@ pub fn render_tile<'w, P: Profile>(
             let hits = hits.get_mut(..room).unwrap_or_default();
             let again = rays.clone();
             for (hit, ray) in hits.iter_mut().zip(rays.by_ref()) {
-                *hit = ray.as_ref().map_or(NONE, |ray| scene.bvh.closest(ray, stack, stats));
+                *hit = ray.as_ref().map_or(NONE, |ray| scene.hits().closest(ray, stack, stats));
             }
             for (&hit, ray) in hits.iter().zip(again) {
                 sum = sum.plus(seen(scene, ray.as_ref(), hit, stack, branches, stats).clamped());

@@ -1,7 +1,7 @@
 //! A scene: a view of a blob, checked once and read in place.
 
 use crate::blob::{BlobError, Header, check, open};
-use crate::bvh::Bvh;
+use crate::bvh::{Bvh, Intersect, Walk};
 use crate::camera::{Camera, Use};
 use crate::colour::{Radiance, Transfer};
 use crate::format::Format;
@@ -98,6 +98,8 @@ pub struct Scene<'a, P: Profile> {
     pub camera: Camera<<P::Kernel as Kernel>::Word>,
     /// Geometry.
     pub bvh: Bvh<'a, P>,
+    /// How rays find what they hit there.
+    pub walk: P::Walk<'a>,
     /// Everything else.
     pub shading: Shading<'a, P::Kernel>,
 }
@@ -141,7 +143,7 @@ impl<'a, P: Profile> Scene<'a, P> {
         let settings = P::Kernel::settings(&header.arithmetic).ok_or(BlobError::Header)?;
         let camera = camera::<P::Kernel>(header, header.camera_use(P::NEEDS)).ok_or(BlobError::Header)?;
         let (bvh, shading) = geometry::<P>(header, settings, sections).ok_or(BlobError::Sections)?;
-        Ok(Self { frame: Frame::of(header), settings, camera, bvh, shading })
+        Ok(Self { frame: Frame::of(header), settings, camera, bvh, walk: P::Walk::default(), shading })
     }
 
     /// All that the header of a blob for this kernel says; what is not the header is not checked.
@@ -162,6 +164,12 @@ impl<P: Profile> Scene<'_, P> {
         } else {
             0
         }
+    }
+
+    /// What finds what rays hit.
+    #[inline(always)]
+    pub fn hits(&self) -> impl Intersect<P::Kernel> + '_ {
+        self.walk.over(&self.bvh)
     }
 
     /// Whether surfaces are in each other's way of light.

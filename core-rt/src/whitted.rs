@@ -73,7 +73,7 @@ pub(crate) fn radiance<P: Profile>(
         let Some(next) = branches.pop() else { return total };
         (taken, share, depth) = next;
         ray = &taken;
-        hit = scene.bvh.closest(ray, stack, stats);
+        hit = scene.hits().closest(ray, stack, stats);
         stats.surface(|| scene.bvh.id(hit));
     }
 }

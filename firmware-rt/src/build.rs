@@ -192,7 +192,7 @@ fn firmware(
          #[derive(Clone, Copy, Debug, Default)]\n\
          struct This;\n\
          \n\
-         impl Profile for This {{\n    type Kernel = {kernel};\n    const NEEDS: Needs = Needs::from_bits({needs:#x});\n    \
+         impl Profile for This {{\n    type Kernel = {kernel};\n    type Walk<'a> = core_rt::bvh::InPlace;\n    const NEEDS: Needs = Needs::from_bits({needs:#x});\n    \
          const PREFER: Prefer = Prefer::{prefer:?};\n}}\n\
          \n\
          impl Firmware for This {{\n    type Profile = Self;\n    const BOARD: &'static Board = &board::{board};\n    \

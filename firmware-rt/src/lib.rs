@@ -7,6 +7,7 @@
 //! # On the chip
 //! `run` checks the blob where it lies in flash and renders it tile by tile, between the marks of `window`,
 //! and with those of `marks` where rays are told apart.
+//! `planes` is the same for the tracer of 1994, with the feature of that name.
 //! `transport` takes log and frames to the host, `stack` measures, `end` is how every run ends, well or not.
 //!
 //! # Building
@@ -31,6 +32,8 @@ pub mod end;
 mod marks;
 #[cfg(target_os = "none")]
 pub mod misbehave;
+#[cfg(all(target_os = "none", feature = "planes"))]
+pub mod planes;
 #[cfg(target_os = "none")]
 mod refusal;
 #[cfg(target_os = "none")]

@@ -215,7 +215,7 @@ fn draw<'w, F: Firmware>(
 }
 
 /// The blob in its place, as long as it says, or as long as there is room.
-fn blob(place: Region) -> &'static [u8] {
+pub(crate) fn blob(place: Region) -> &'static [u8] {
     let first = core::ptr::without_provenance::<u8>(place.start as usize);
     // SAFETY: flash, which is mapped whether or not anything was put into it, and which nothing writes to.
     let room = unsafe { core::slice::from_raw_parts(first, place.length as usize) };

@@ -28,9 +28,9 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-pub use failure::{Failure, warn};
+pub use failure::{Failure, note, warn};
 pub use help::smaller;
-pub use input::SceneArguments;
+pub use input::{SceneArguments, size as picture_size};
 pub use load::Scene;
 
 /// Integer ray tracing for chips without an FPU, and on a PC, bit for bit the same.
@@ -55,6 +55,9 @@ enum Command {
     /// Say which chips a scene fits, and by how much it misses others
     #[command(disable_help_flag = true, disable_version_flag = true)]
     Fit(external::Arguments),
+    /// Open a window to move in, to see a scene by any kernel or as a chip would show it
+    #[command(disable_help_flag = true, disable_version_flag = true)]
+    View(external::Arguments),
     Stress(stress::Arguments),
     Report(report::Arguments),
     PixelPlanes(Box<pixel_planes::Arguments>),
@@ -75,6 +78,7 @@ pub fn run() -> ExitCode {
         Some(Command::Emulate(arguments)) => emulate::run(&arguments),
         Some(Command::Flash(arguments)) => flash::run(&arguments),
         Some(Command::Fit(arguments)) => return arguments.run(&external::FIT),
+        Some(Command::View(arguments)) => return arguments.run(&external::VIEW),
         Some(Command::Stress(arguments)) => stress::run(&arguments),
         Some(Command::Report(arguments)) => report::run(&arguments),
         Some(Command::PixelPlanes(arguments)) => pixel_planes::run(&arguments),

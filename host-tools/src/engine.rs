@@ -10,13 +10,16 @@ use core_rt::exact::{Exact14, Exact20, Exact29};
 use core_rt::hanika::{HanikaC, HanikaCd, HanikaCons};
 use core_rt::profile::Full;
 use core_rt::scene::Scene;
+use exact_simd::{ByEights, Eights, Tree};
 use float_rt::{Float32, Float64};
 
 use crate::grid::{Grid, GridError};
 use crate::model::Model;
 use crate::needs::{self, Asked};
+use crate::planes::engine::Planes12;
 use crate::prepare::{self, Options, PrepareError, Prepared};
 use crate::render::{self, Progress, Rendered};
+use crate::stage::{Stage, Staged};
 use crate::trace::{Measure, Trace, Tracer};
 use crate::witness::Seen;
 
@@ -40,6 +43,11 @@ pub trait Engine: Sync + std::fmt::Debug {
     /// # Errors
     /// Where the kernel cannot hold it.
     fn prepare(&self, model: &Model, options: &Options) -> Result<Prepared, PrepareError>;
+    /// What a model loses on a grid, a sentence each.
+    fn losses(&self, model: &Model, grid: &Grid) -> Vec<String> {
+        let losses = prepare::losses(self.name(), self.grid_bits(), self.radius_min(), model, grid);
+        losses.iter().map(ToString::to_string).collect()
+    }
     /// The header and the sizes of a blob, checked as the device checks it.
     ///
     /// # Errors
@@ -55,7 +63,14 @@ pub trait Engine: Sync + std::fmt::Debug {
     /// # Errors
     /// Where the blob is not one for this kernel.
     fn render(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<Rendered, BlobError>;
-    /// The same, and what the rays of each pixel saw, row by row.
+    /// The same, by the machine's vector units where the kernel has a way; box and triangle tests are counted as they are made.
+    ///
+    /// # Errors
+    /// Where the blob is not one for this kernel.
+    fn render_in_lanes(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<Rendered, BlobError>;
+    /// The vector units of [`Engine::render_in_lanes`]; `None` where there are none for this kernel.
+    fn lanes(&self) -> Option<&'static str>;
+    /// The picture, and what the rays of each pixel saw, row by row.
     ///
     /// # Errors
     /// Where the blob is not one for this kernel.
@@ -70,10 +85,15 @@ pub trait Engine: Sync + std::fmt::Debug {
     /// # Errors
     /// Where the blob is not one for this kernel, or its header does not say where its grid is.
     fn tracer<'a>(&self, blob: &'a [u8]) -> Result<Box<dyn Trace + 'a>, BlobError>;
+    /// What draws a blob's scene through other cameras than its own.
+    ///
+    /// # Errors
+    /// Where the blob is not one for this kernel, or its header does not say where its grid is.
+    fn stage<'a>(&self, blob: &'a [u8]) -> Result<Box<dyn Stage + 'a>, BlobError>;
 }
 
 /// Bytes of each section, padding left out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Sizes {
     /// Tree nodes.
     pub nodes: u64,
@@ -93,10 +113,42 @@ pub struct Sizes {
     pub shading: u64,
 }
 
+/// A kernel with its way to draw by vector units; in place where it has none.
+trait Lanes: Measure {
+    fn unit() -> Option<&'static str> {
+        None
+    }
+
+    fn render(blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<Rendered, BlobError> {
+        Ok(render::render(&Scene::<Full<Self>>::new_checked(blob)?, tile, progress))
+    }
+}
+
+impl Lanes for Exact29 {
+    fn unit() -> Option<&'static str> {
+        exact_simd::unit()
+    }
+
+    fn render(blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<Rendered, BlobError> {
+        let mut scene = Scene::<ByEights>::new_checked(blob)?;
+        let tree = Tree::new(&scene.bvh);
+        scene.walk = Eights::new(tree.as_ref(), &scene);
+        Ok(render::render(&scene, tile, progress))
+    }
+}
+
+impl Lanes for Exact20 {}
+impl Lanes for Exact14 {}
+impl Lanes for HanikaC {}
+impl Lanes for HanikaCd {}
+impl Lanes for HanikaCons {}
+impl Lanes for Float32 {}
+impl Lanes for Float64 {}
+
 #[derive(Debug)]
 struct Of<K>(PhantomData<K>);
 
-impl<K: Measure + std::fmt::Debug> Engine for Of<K> {
+impl<K: Lanes + std::fmt::Debug> Engine for Of<K> {
     fn name(&self) -> &'static str {
         K::NAME
     }
@@ -148,6 +200,14 @@ impl<K: Measure + std::fmt::Debug> Engine for Of<K> {
         Ok(render::render(&Scene::<Full<K>>::new_checked(blob)?, tile, progress))
     }
 
+    fn render_in_lanes(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<Rendered, BlobError> {
+        <K as Lanes>::render(blob, tile, progress)
+    }
+
+    fn lanes(&self) -> Option<&'static str> {
+        K::unit()
+    }
+
     fn witness(&self, blob: &[u8], tile: [u16; 2], progress: Progress<'_>) -> Result<(Rendered, Vec<Seen>), BlobError> {
         Ok(render::witness(&Scene::<Full<K>>::new_checked(blob)?, tile, progress))
     }
@@ -164,6 +224,12 @@ impl<K: Measure + std::fmt::Debug> Engine for Of<K> {
         let tracer = Tracer::<K>::new(Scene::new_checked(blob)?, &source).ok_or(BlobError::Header)?;
         Ok(Box::new(tracer))
     }
+
+    fn stage<'a>(&self, blob: &'a [u8]) -> Result<Box<dyn Stage + 'a>, BlobError> {
+        let header = Scene::<Full<K>>::header(blob)?;
+        let staged = Staged::<K>::new(Scene::new_checked(blob)?, &header).ok_or(BlobError::Header)?;
+        Ok(Box::new(staged))
+    }
 }
 
 /// All kernels, the default of `render` first.
@@ -178,10 +244,13 @@ pub const ENGINES: [&dyn Engine; 8] = [
     &Of::<Float64>(PhantomData),
 ];
 
+/// The tracer of 1994, apart from those that take any scene: it has spheres alone.
+pub const PLANES12: &dyn Engine = &Planes12;
+
 /// The kernel of a name.
 #[must_use]
 pub fn by_name(name: &str) -> Option<&'static dyn Engine> {
-    ENGINES.into_iter().find(|engine| engine.name() == name)
+    ENGINES.into_iter().chain([PLANES12]).find(|engine| engine.name() == name)
 }
 
 /// The kernel of a number, as a blob has it.

@@ -23,6 +23,7 @@ pub mod prepare;
 pub mod reference;
 pub mod render;
 pub mod report;
+pub mod stage;
 pub mod stress;
 pub mod textures;
 pub mod trace;

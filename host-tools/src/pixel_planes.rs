@@ -8,11 +8,15 @@
 //! L. Kesteloot, "Real Time Ray Tracing on Pixel-Planes 5", 1994. Neither the clock nor what an operation on a bit takes stands
 //! in the latter: they are arguments.
 
+pub mod arithmetic;
 pub mod memory;
+pub mod picture;
+pub mod plot;
+pub mod processors;
 pub mod program;
 
 use memory::{Plan, PlanError, Store};
-use program::{Shape, program};
+use program::{Shape, Step, program};
 
 /// Pixels of a side of a region, and processors of a side of a renderer.
 pub const REGION: u32 = 128;
@@ -38,7 +42,9 @@ impl Default for Machine {
 /// What the machine makes of a scene's shape.
 #[derive(Clone, Debug)]
 pub struct Run {
-    /// Where values are.
+    /// What is done, step by step.
+    pub steps: Vec<Step>,
+    /// Where values are then.
     pub plan: Plan,
     /// Cycles in which processors compute, for a region.
     pub computing: u64,
@@ -57,7 +63,7 @@ impl Run {
         let plan = Plan::new(&steps, &machine.store, machine.cycles_per_bit)?;
         let computing = steps.iter().map(|step| step.bit_operations * machine.cycles_per_bit).sum();
         let waiting = plan.waiting;
-        Ok(Self { plan, computing, waiting, clock_hz: machine.clock_hz })
+        Ok(Self { steps, plan, computing, waiting, clock_hz: machine.clock_hz })
     }
 
     /// Frames a second of a picture by so many renderers, which take turns at its regions.

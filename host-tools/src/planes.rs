@@ -3,10 +3,13 @@
 //! What it knows is less than what other kernels do: spheres, one light without shadows, diffuse and mirrored shares. The
 //! rest of a model is refused where leaving it out would show another scene, and said where it shows the same one plainer.
 
+pub mod blob;
+pub mod engine;
 pub mod scene;
+mod stage;
+pub mod trace;
 
-use core_rt::colour::{Colour, Radiance, Rgb16};
-use planes_rt::colour::Light;
+use planes_rt::colour::{Light, encode};
 use planes_rt::pixel;
 use planes_rt::scene::Scene;
 use planes_simd::Lockstep;
@@ -21,9 +24,9 @@ use crate::render::Progress;
 pub const NAME: &str = "planes12";
 
 /// Lanes of a tile.
-const LANES: usize = 16;
+const LANES: usize = 32;
 /// How many of them are side by side.
-const ACROSS: u16 = 4;
+const ACROSS: u16 = 8;
 
 /// How pixels are taken. Pictures are the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,15 +70,28 @@ fn tiles(scene: &Scene<'_>, unit: Lockstep, y: u16, band: &mut [Light]) {
     }
 }
 
+/// How many rays look for a sphere, generation by generation. Of a ray of which nothing is seen there is no next one.
+#[must_use]
+pub fn lookups(scene: &Scene<'_>) -> Vec<u64> {
+    let [width, height] = scene.settings().size;
+    let mut counts = vec![0; scene.settings().generations.into()];
+    for pixel in (0..height).flat_map(|y| (0..width).map(move |x| [x, y])) {
+        let mut lookups = 1;
+        pixel::trace_telling(scene, pixel, |met| {
+            lookups += usize::from(scene.spheres()[met.sphere].surface.mirror != [0; 3]);
+        });
+        counts.iter_mut().take(lookups).for_each(|count| *count += 1);
+    }
+    counts
+}
+
 /// Light as a picture.
 #[must_use]
 pub fn picture(scene: &Scene<'_>, light: &[Light], encoding: model::Transfer) -> Picture {
     let [width, height] = scene.settings().size;
     let mut picture = Picture::new(width.into(), height.into());
     for (pixel, light) in picture.pixels_mut().iter_mut().zip(light) {
-        // 12 bits in 16, so that white stays white.
-        let mantissa = light.map(|channel| channel << 4 | channel >> 8);
-        *pixel = Rgb16::constant(&Radiance { mantissa, exponent: 0 }).encode(transfer(encoding));
+        *pixel = encode(*light, transfer(encoding));
     }
     picture
 }

@@ -17,6 +17,9 @@ pub use layout::Blob;
 pub use loss::{Keeper, Loss, losses};
 pub use paint::unplaced;
 
+pub(crate) use camera::camera;
+pub(crate) use header::light;
+
 use shared::Shared;
 
 use core_rt::arithmetic::Knobs;
@@ -29,6 +32,7 @@ use thiserror::Error;
 
 use crate::grid::{Grid, GridError, LEAST_BITS, Snapped};
 use crate::model::Model;
+use crate::planes::scene::PlanesError;
 use crate::textures::Texels;
 use crate::tree::{self, Tree, TreeOptions};
 
@@ -60,11 +64,14 @@ pub fn tree_for(prefer: Prefer) -> TreeOptions {
 }
 
 /// Why a scene cannot be prepared for a kernel.
-#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum PrepareError {
     /// No grid.
     #[error(transparent)]
     Grid(#[from] GridError),
+    /// Nothing for the tracer of 1994.
+    #[error(transparent)]
+    Planes(#[from] PlanesError),
     /// Nothing is left.
     #[error(
         "none of {} on the {bits}-bit grid of {kernel}, so nothing is left to render; {}",
@@ -214,9 +221,9 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
     let (of_triangles, of_spheres) = order.split_at(ids.len());
     let ids: Vec<u32> = of_triangles.iter().map(|&place| ids[place as usize]).collect();
     let balls: Vec<(u32, Ball)> = of_spheres.iter().map(|&place| balls[place as usize - ids.len()]).collect();
-    let refused = PrepareError::Knobs { ranges: K::KNOBS, kernel: K::NAME };
-    let arithmetic = K::settle(&options.knobs, ids.iter().map(|&id| snapped.corners(id))).ok_or(refused)?;
-    let settings = K::settings(&arithmetic).ok_or(refused)?;
+    let refused = || PrepareError::Knobs { ranges: K::KNOBS, kernel: K::NAME };
+    let arithmetic = K::settle(&options.knobs, ids.iter().map(|&id| snapped.corners(id))).ok_or_else(refused)?;
+    let settings = K::settings(&arithmetic).ok_or_else(refused)?;
     let number = |&id: &u32| materials[model.triangles[id as usize].material as usize];
     // What does not fit is not among `balls`.
     let sphere = |&(number, ball): &(u32, Ball)| {

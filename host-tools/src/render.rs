@@ -84,7 +84,7 @@ fn tiles<P: Profile, S: Stats + Send>(
 }
 
 /// One tile, with storage for it alone.
-fn one_tile<P: Profile>(scene: &Scene<'_, P>, tile: Tile, stats: &mut impl Stats) -> Vec<u8> {
+pub(crate) fn one_tile<P: Profile>(scene: &Scene<'_, P>, tile: Tile, stats: &mut impl Stats) -> Vec<u8> {
     let mut stack = heapless::Vec::<(u32, <P::Kernel as Kernel>::Distance), MAX_DEPTH>::new();
     let mut hits = vec![0; tile.pixels()];
     let mut pixels = vec![0; tile.pixels() * scene.frame.format.bytes()];

@@ -111,7 +111,7 @@ impl Scaled {
 }
 
 /// The grid that a header says a blob was made on; `None` where that is none.
-fn source_grid(source: &SourceGrid) -> Option<Grid> {
+pub(crate) fn source_grid(source: &SourceGrid) -> Option<Grid> {
     let grid = Grid {
         origin: DVec3::from_array(source.origin_bits.map(f64::from_bits)),
         scale: f64::from_bits(source.scale_bits),

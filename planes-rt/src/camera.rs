@@ -4,13 +4,16 @@
 
 use core::array::from_fn;
 
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
+
 use crate::widths::Widths;
 
 /// Bits of coefficients below a component's unit: over 2^14 pixels the rounding of a step adds up to half a unit.
 pub const FRACTION_BITS: u32 = 14;
 
 /// A triple that is linear in the pixel, in components times 2^[`FRACTION_BITS`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
+#[repr(C)]
 pub struct Linear {
     /// Of the first pixel, in the upper left corner.
     pub first: [i32; 3],
@@ -52,7 +55,8 @@ impl Linear {
 }
 
 /// Where rays begin, and where they go.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
+#[repr(C)]
 pub struct Camera {
     /// The origins of rays.
     pub origin: Linear,

@@ -3,6 +3,9 @@
 //! Light is linear, 0 to [`LIGHT_MAX`]; a share has 11 bits below its point, 0 to [`SHARE_ONE`]. Products of the two have 23
 //! bits and are rounded to nearest.
 
+use core_rt::colour::{Colour, Radiance, Rgb16, Rgb888, Transfer};
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
+
 use crate::widths::Widths;
 
 /// Linear red, green and blue, each in [0, [`LIGHT_MAX`]].
@@ -17,8 +20,18 @@ pub const SHARE_ONE: u16 = 1 << SHARE_BITS;
 /// White.
 pub const LIGHT_MAX: u16 = (1 << 12) - 1;
 
+/// Light as a pixel's bytes.
+#[inline(always)]
+#[must_use]
+pub fn encode(light: Light, transfer: Transfer) -> Rgb888 {
+    // 12 bits in 16, so that white stays white.
+    let mantissa = light.map(|channel| channel << 4 | channel >> 8);
+    Rgb16::constant(&Radiance { mantissa, exponent: 0 }).encode(transfer)
+}
+
 /// What a surface sends.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
+#[repr(C)]
 pub struct Surface {
     /// Under the light, where it falls straight: at most [`LIGHT_MAX`].
     pub lit: Light,
@@ -49,8 +62,8 @@ pub(crate) fn share_of(light: i32, share: i32) -> i32 {
     (light * share + (1 << (SHARE_BITS - 1))) >> SHARE_BITS
 }
 
-/// Bits of a quotient's parts: their product stays below 2^31.
-const PART_BITS: u32 = 15;
+/// Bits of the two factors of a [`Cosine`]: their product stays below 2^31.
+pub const PART_BITS: u32 = 15;
 
 /// The division of `normal . light` by a radius, for normals as long as that and a light's vector as long as
 /// [`Widths::coordinate_max`]: the cosine between them, as a share.
@@ -58,7 +71,7 @@ const PART_BITS: u32 = 15;
 /// The divisor is the same for a whole sphere: one reciprocal serves all of its pixels. With n = `normal . light`, both factors of
 /// `(n / 2^shift) (2^(13 + b) / radius)` are cut to 15 bits, where b is the bits of the radius.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Cosine {
+pub struct Cosine {
     /// Taken from the dot product.
     shift: u32,
     /// `floor(2^(13 + b) / radius)`, in (2^13, 2^14].
@@ -70,7 +83,8 @@ pub(crate) struct Cosine {
 impl Cosine {
     /// For a radius below 2^14.
     #[inline(always)]
-    pub(crate) fn new(radius: i32, widths: Widths) -> Self {
+    #[must_use]
+    pub fn new(radius: i32, widths: Widths) -> Self {
         let radius = radius.max(1);
         let bits = u32::BITS - radius.unsigned_abs().leading_zeros();
         // Of the brightest dot product.
@@ -80,6 +94,24 @@ impl Cosine {
         // The product is the cosine times 2^(coordinate - 1 - shift + 13 + bits), with the share's 11 bits left over.
         let last_shift = (widths.coordinate() - 1 + PART_BITS - 2 + bits).saturating_sub(shift + SHARE_BITS);
         Self { shift, reciprocal, last_shift }
+    }
+
+    /// Bits that are taken from the dot product.
+    #[must_use]
+    pub const fn shift(self) -> u32 {
+        self.shift
+    }
+
+    /// What the rest is multiplied by, at most 2^14.
+    #[must_use]
+    pub const fn reciprocal(self) -> i32 {
+        self.reciprocal
+    }
+
+    /// Bits that are taken from their product.
+    #[must_use]
+    pub const fn last_shift(self) -> u32 {
+        self.last_shift
     }
 
     /// The cosine, at most 1: a normal may be longer than the radius by what was rounded.

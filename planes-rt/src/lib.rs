@@ -7,7 +7,7 @@
 //! [`widths`] are the words and what happens beyond them, [`root`] is the square root, [`colour`] light.
 //!
 //! # A scene
-//! A [`scene::Scene`] is spheres, one light and a [`camera`], checked once against its words.
+//! A [`scene::Scene`] is spheres, one light and a [`camera`], checked once against its words; a [`blob`] has one as bytes.
 //!
 //! # Tracing
 //! `step` has what a processor does with one ray and one sphere. [`pixel`] does it for one pixel, and skips what is not
@@ -15,6 +15,7 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+pub mod blob;
 pub mod camera;
 pub mod colour;
 pub mod lanes;

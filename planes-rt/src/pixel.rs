@@ -55,9 +55,10 @@ pub fn trace_telling(scene: &Scene<'_>, pixel: [u16; 2], mut tell: impl FnMut(Me
     light.map(|channel| channel.min(LIGHT_MAX.into()) as u16)
 }
 
-/// The sphere at which a ray ends, its place in the list, and its t.
+/// The sphere at which a ray ends: its place in the list, the sphere, and t with its fractional bits. Components of the origin and of
+/// the direction are held by their words.
 #[inline(always)]
-fn meet<'a>(scene: &Scene<'a>, origin: [i16; 3], direction: [i16; 3]) -> Option<(usize, &'a Sphere, i32)> {
+pub fn meet<'a>(scene: &Scene<'a>, origin: [i16; 3], direction: [i16; 3]) -> Option<(usize, &'a Sphere, i32)> {
     let widths = scene.settings.widths;
     let a = product(direction, direction, widths);
     let mut nearest = None;

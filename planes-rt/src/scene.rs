@@ -2,12 +2,15 @@
 
 use core::fmt::{Display, Formatter};
 
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
+
 use crate::camera::Camera;
 use crate::colour::{LIGHT_MAX, Light, Surface};
 use crate::widths::Widths;
 
 /// A sphere, in components.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
+#[repr(C)]
 pub struct Sphere {
     /// The centre.
     pub centre: [i16; 3],
@@ -127,6 +130,18 @@ impl<'a> Scene<'a> {
     #[must_use]
     pub fn spheres(&self) -> &'a [Sphere] {
         self.spheres
+    }
+
+    /// The vector towards the light.
+    #[must_use]
+    pub fn light(&self) -> [i16; 3] {
+        self.light
+    }
+
+    /// What is seen behind all spheres.
+    #[must_use]
+    pub fn background(&self) -> Light {
+        self.background
     }
 
     /// The origin and the direction of a pixel's ray; places beyond the picture are those of its edge.

@@ -34,6 +34,7 @@ fn profile(kernel: &str, Traits { needs, depth, branches, .. }: &Traits) -> Stri
          \n\
          impl core_rt::profile::Profile for This {{\n    \
          type Kernel = Kernel;\n    \
+         type Walk<'a> = core_rt::bvh::InPlace;\n    \
          const NEEDS: core_rt::profile::Needs = core_rt::profile::Needs::from_bits({needs:#x});\n    \
          const PREFER: core_rt::profile::Prefer = core_rt::profile::Prefer::{prefer:?};\n}}\n"
     )

@@ -4,6 +4,7 @@
 use std::marker::PhantomData;
 
 use core_rt::blob::BlobError;
+use core_rt::bvh::InPlace;
 use core_rt::exact::Exact14;
 use core_rt::hanika::HanikaC;
 use core_rt::kernel::Kernel;
@@ -20,6 +21,7 @@ struct Without<K, const BIT: u32>(PhantomData<K>);
 
 impl<K: Kernel, const BIT: u32> Profile for Without<K, BIT> {
     type Kernel = K;
+    type Walk<'a> = InPlace;
     const NEEDS: Needs = Needs::from_bits(Needs::ALL.bits() & !(1 << BIT));
 }
 

@@ -16,6 +16,7 @@ use host_tools::tree::TreeOptions;
 use study::degenerates::{self, Degenerates};
 use study::edge_shift::{self, EdgeShift, Thinnest};
 use study::leaf_threshold::{LeafThreshold, Row};
+use study::machine::Machine;
 use study::planes::{self, Planes};
 use study::scenes::{self, Subject};
 use study::seams::{self, Seams};
@@ -288,9 +289,11 @@ fn the_document_on_the_tracer_of_1994_is_of_the_tracer_as_it_is() {
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
     let renew = "renew it with `cargo xtask planes`";
     let read = |name: &str| String::from_utf8(files::read(&docs.join(name)).unwrap()).unwrap();
-    let figures = Planes::measure(planes::SIZE);
-    assert!(tables_are_whole(&figures.document()));
-    assert_eq!(read("PLANES.md"), figures.document(), "{renew}");
+    let (figures, machine) = (Planes::measure(planes::SIZE), Machine::measure(planes::SIZE));
+    let document = figures.document() + &machine.document();
+    assert!(tables_are_whole(&document));
+    assert_eq!(read("PLANES.md"), document, "{renew}");
+    assert_eq!(read("studies/planes-machine.svg"), machine.plot(), "{renew}");
     assert_eq!(read("studies/planes.svg"), figures.plot(), "{renew}");
     for (picture, name) in figures.pictures.iter().zip(["literal", "nearest"]) {
         let path = docs.join(format!("studies/planes-{name}.png"));

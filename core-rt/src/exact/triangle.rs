@@ -133,8 +133,8 @@ pub struct Depth<W: Width> {
     pub numerator: W::Wide,
     /// The denominator of t.
     pub denominator: W::Wide,
-    /// t within [`Width::SLACK`].
-    pub(super) t: W::Word,
+    /// t within [`Width::SLACK`], with [`Width::T_BITS`].
+    pub t: W::Word,
 }
 
 /// The hit, if there is one with 0 < t within the ray's reach.
@@ -218,7 +218,7 @@ fn decided<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> bool 
 
 /// t, for a line that meets the triangle.
 #[cfg_attr(not(prefer_size), inline(always))]
-fn depth<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> Option<Depth<W>> {
+pub(super) fn depth<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> Option<Depth<W>> {
     let [v0, e1, e2] = parts::<W>(triangle);
     let s = sub(ray.origin, v0);
     let (numerator, denominator) = fraction::<W>(ray, s, e1, e2);

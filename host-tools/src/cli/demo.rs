@@ -27,7 +27,7 @@ pub(super) fn run() -> Result<(), Failure> {
     for engine in ENGINES {
         let prepared = engine.prepare(&model, &Options::default())?;
         let scene = Scene { engine, blob: prepared.blob, degenerates: Some(prepared.degenerates), choice: None };
-        let picture = render::picture(&scene)?.picture;
+        let picture = render::picture(&scene, false)?.picture;
         let apart = compare(&picture, &reference)?;
         rows.push(format!(
             "  {:<8} {:>8} {:>8} {:>8} {:>10.1} {:>12}",

@@ -14,6 +14,7 @@ use super::failure::{Failure, warn};
 use super::help::smaller;
 use super::input::SceneArguments;
 use super::load::Scene;
+use super::planes::Emulation;
 use super::{board, output, progress};
 use crate::emulate::breakdown::Breakdown;
 use crate::emulate::counter::{Counter, Counts};
@@ -114,6 +115,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     files::check_writable(&arguments.output)?;
     let board = arguments.board;
     let machine = Machine::of(board)?;
+    if arguments.scene.is_planes() {
+        if arguments.hits.is_some() || arguments.breakdown {
+            return Err(Failure::input("--hits and --breakdown are of kernels with a tree; planes12 has neither"));
+        }
+        let limit = Duration::from_secs(arguments.timeout);
+        let (scene, path, as_json) = (&arguments.scene, arguments.output.as_path(), arguments.json);
+        return super::planes::emulate(Emulation { scene, board, path, limit, as_json });
+    }
     let scene = arguments.scene.load_for_chip()?;
     let (header, sizes) = scene.engine.inspect(scene.blob.bytes())?;
     let failure = |error: EmulateError| match error {

@@ -28,6 +28,14 @@ pub(super) const FIT: Program = Program {
     reason: "has the memory maps of some 4,000 chips in it",
 };
 
+/// `intray view`.
+pub(super) const VIEW: Program = Program {
+    verb: "view",
+    name: "intray-view",
+    package: "view",
+    reason: "brings what windows, fonts and gamepads take",
+};
+
 /// All that follows the verb, for the program to read.
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {

@@ -35,7 +35,7 @@ pub fn warn(warning: impl Display) {
 }
 
 /// Passes on what another says, on stderr.
-pub(super) fn note(line: impl Display) {
+pub fn note(line: impl Display) {
     let _ = writeln!(std::io::stderr(), "{line}");
 }
 

@@ -208,8 +208,11 @@ impl ThreadArguments {
     }
 }
 
-/// `WxH`.
-pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
+/// A picture's size as `WxH`.
+///
+/// # Errors
+/// What would be right, for a person.
+pub fn size(text: &str) -> Result<[u32; 2], String> {
     let Some(size) = parse_size(text) else {
         return Err("expected WIDTHxHEIGHT in pixels, such as 640x480".into());
     };

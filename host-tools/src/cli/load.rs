@@ -105,7 +105,7 @@ impl SceneArguments {
     fn load_by(&self, engine: Option<&'static dyn Engine>) -> Result<(Scene, Option<Model>), Failure> {
         if self.is_planes() {
             return Err(Failure::input(
-                "planes12 makes pictures by `render`, and has no blob yet; choose another kernel",
+                "planes12 is known to render, trace, emulate, report, stress and pixel-planes; choose another kernel",
             ));
         }
         if !self.is_model() {

@@ -1,21 +1,22 @@
 //! `intray pixel-planes`: the machine of 1994, modelled.
 
+use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use clap::Args;
-use planes_rt::pixel;
-use planes_rt::scene::{Outline, Scene};
+use planes_rt::scene::Outline;
 use planes_rt::widths::Widths;
 use planes_simd::Lockstep;
 use serde::Serialize;
 
 use super::failure::{Failure, warn};
 use super::input::SceneArguments;
-use super::output;
+use super::{output, progress};
 use crate::files;
 use crate::pixel_planes::memory::Store;
-use crate::pixel_planes::program::Shape;
-use crate::pixel_planes::{Machine, Run, regions};
+use crate::pixel_planes::picture::Drawn;
+use crate::pixel_planes::program::{Operation, Shape};
+use crate::pixel_planes::{Machine, Run, plot, regions};
 use crate::planes::scene::{DIRECTION_LENGTH, Options, Planes};
 use crate::planes::{self, Way};
 
@@ -28,6 +29,14 @@ pub(super) struct Arguments {
     /// Where the picture goes, if anywhere
     #[arg(short, value_name = "PNG")]
     output: Option<PathBuf>,
+
+    /// Where plots go, if anywhere: frames a second against renderers, spheres and generations, and enabled lanes over time
+    #[arg(long, value_name = "SVG")]
+    plot: Option<PathBuf>,
+
+    /// Where the steps go, if anywhere: the operations and the enabled lanes of each, and the bits in which each value is
+    #[arg(long, value_name = "CSV")]
+    steps: Option<PathBuf>,
 
     /// Bits of a component of a position or a direction
     #[arg(long, value_name = "BITS", default_value_t = Widths::PIXEL_PLANES.coordinate())]
@@ -108,6 +117,8 @@ struct Report {
     frames_a_second: f64,
     /// Of all pixels, those whose rays look for a sphere, generation by generation.
     enabled: Vec<f64>,
+    /// CRC-32 of the RGB888 bytes of the picture, which is the kernel's.
+    image_crc32: String,
 }
 
 /// A value that had to go.
@@ -120,7 +131,7 @@ struct Swapped {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    if let Some(path) = &arguments.output {
+    for path in [&arguments.output, &arguments.plot, &arguments.steps].into_iter().flatten() {
         files::check_writable(path)?;
     }
     let is_positive = arguments.clock.is_finite() && arguments.clock > 0.0;
@@ -142,42 +153,91 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         generations: scene.settings().generations.into(),
         outline,
     };
-    let machine = Machine {
-        store: Store {
-            local_bits: arguments.local_bits,
-            backing_bits: arguments.backing_bits,
-            block_cycles: arguments.block_cycles,
-            ..Store::default()
-        },
-        cycles_per_bit: arguments.cycles_per_bit,
-        clock_hz: arguments.clock * 1e6,
-    };
+    let machine = arguments.machine();
     let modelled = Run::new(&machine, &shape).map_err(|error| named(&error))?;
-    if let Some(path) = &arguments.output {
-        let light = planes::light(&scene, Way::Lanes(Lockstep::detected()), &|_| ());
-        planes::picture(&scene, &light, model.render.transfer).write_png(path)?;
+    let size = model.render.size;
+    let bar = progress::bar("tracing bit by bit", size.map(u64::from).iter().product());
+    let drawn = modelled.draw(&scene, &shape, &|pixels| bar.inc(pixels));
+    bar.finish_and_clear();
+    if drawn.light != planes::light(&scene, Way::Lanes(Lockstep::detected()), &|_| ()) {
+        return Err(Failure::check("the modelled processors and the kernel do not agree on the picture"));
     }
-    let report = report(arguments, &shape, &modelled, model.render.size, enabled(&scene));
+    let picture = planes::picture(&scene, &drawn.light, model.render.transfer);
+    let pixels = f64::from(size[0]) * f64::from(size[1]);
+    let enabled: Vec<f64> = drawn.enabled.iter().map(|&count| count as f64 / pixels).collect();
+    if let Some(path) = &arguments.plot {
+        let plot = plot::svg(&machine, &shape, &modelled, (size, arguments.renderers), &enabled);
+        files::write_atomically(path, plot.map_err(Failure::check)?.as_bytes())?;
+    }
+    if let Some(path) = &arguments.steps {
+        files::write_atomically(path, steps(&modelled, &drawn).as_bytes())?;
+    }
+    if let Some(path) = &arguments.output {
+        picture.write_png(path)?;
+    }
+    let begins = modelled.steps.iter().zip(&enabled).filter(|(step, _)| step.operation == Operation::Begin);
+    let by_generation = begins.map(|(_, &share)| share).collect();
+    let image_crc32 = format!("{:08x}", picture.crc32());
+    let report = report(arguments, &shape, &modelled, size, by_generation, image_crc32);
     if arguments.json { output::json(&report) } else { output::line(&text(&report)) }
 }
 
-/// Of all pixels, those whose rays look for a sphere, generation by generation.
-fn enabled(scene: &Scene<'_>) -> Vec<f64> {
-    let [width, height] = scene.settings().size;
-    let mut counts = vec![0u64; scene.settings().generations.into()];
-    for pixel in (0..height).flat_map(|y| (0..width).map(move |x| [x, y])) {
-        // Of a ray of which nothing is seen there is no next generation.
-        let mut lookups = 1;
-        pixel::trace_telling(scene, pixel, |met| {
-            lookups += usize::from(scene.spheres()[met.sphere].surface.mirror != [0; 3]);
-        });
-        counts.iter_mut().take(lookups).for_each(|count| *count += 1);
+impl Arguments {
+    fn machine(&self) -> Machine {
+        Machine {
+            store: Store {
+                local_bits: self.local_bits,
+                backing_bits: self.backing_bits,
+                block_cycles: self.block_cycles,
+                ..Store::default()
+            },
+            cycles_per_bit: self.cycles_per_bit,
+            clock_hz: self.clock * 1e6,
+        }
     }
-    let pixels = f64::from(width) * f64::from(height);
-    counts.into_iter().map(|count| count as f64 / pixels).collect()
 }
 
-fn report(arguments: &Arguments, shape: &Shape, run: &Run, size: [u32; 2], enabled: Vec<f64>) -> Report {
+/// A row a step, of values as `name=bits`, the bits as ranges that a space parts.
+fn steps(run: &Run, drawn: &Drawn) -> String {
+    let mut text = String::from("step,sphere,bit_operations,enabled,bits,out,in,values\n");
+    for ((step, moment), enabled) in run.steps.iter().zip(&run.plan.moments).zip(&drawn.enabled) {
+        let moved = |is_outward| {
+            let moved = moment.transfers.iter().filter(|transfer| transfer.is_outward == is_outward);
+            moved.map(|transfer| format!("{:?}", transfer.value)).collect::<Vec<_>>().join(" ")
+        };
+        let values: Vec<String> =
+            moment.places.iter().map(|(value, places)| format!("{value:?}={}", ranges(places))).collect();
+        // A string takes text.
+        let _ = writeln!(
+            text,
+            "{},{},{},{enabled},{},{},{},{}",
+            moment.step,
+            step.sphere,
+            step.bit_operations,
+            moment.bits,
+            moved(true),
+            moved(false),
+            values.join(";")
+        );
+    }
+    text
+}
+
+/// Places in the order of a value's bits, those in a row as one range.
+fn ranges(places: &[usize]) -> String {
+    let runs = places.chunk_by(|a, b| a + 1 == *b);
+    let runs = runs.filter_map(|run| Some(format!("{}-{}", run.first()?, run.last()?)));
+    runs.collect::<Vec<_>>().join(" ")
+}
+
+fn report(
+    arguments: &Arguments,
+    shape: &Shape,
+    run: &Run,
+    size: [u32; 2],
+    enabled: Vec<f64>,
+    image_crc32: String,
+) -> Report {
     let fullest = run.plan.fullest();
     let swapped = run.plan.swapped.iter().map(|(&value, &[out, back])| Swapped {
         value: format!("{value:?}"),
@@ -194,7 +254,7 @@ fn report(arguments: &Arguments, shape: &Shape, run: &Run, size: [u32; 2], enabl
         high_water_bits: fullest.map_or(0, |moment| moment.bits),
         high_water_step: fullest.map_or("", |moment| moment.step),
         high_water_values: fullest
-            .map_or_else(Vec::new, |moment| moment.held.iter().map(|value| format!("{value:?}")).collect()),
+            .map_or_else(Vec::new, |moment| moment.held().map(|value| format!("{value:?}")).collect()),
         swapped: swapped.collect(),
         backing_bits: run.plan.backing_bits,
         blocks_out: run.plan.blocks[0],
@@ -205,6 +265,7 @@ fn report(arguments: &Arguments, shape: &Shape, run: &Run, size: [u32; 2], enabl
         renderers: arguments.renderers,
         frames_a_second: run.frames_a_second(size, arguments.renderers),
         enabled,
+        image_crc32,
     }
 }
 
@@ -222,7 +283,8 @@ fn text(report: &Report) -> String {
          swapped, with {} bits of the store used:\n{swapped}\n\
          cycles     {} computing and {} waiting for {} blocks, a region\n\
          enabled    {} of the lanes, generation by generation\n\
-         frames     {:.2} a second: {} regions by {} renderers",
+         frames     {:.2} a second: {} regions by {} renderers\n\
+         picture    of CRC-32 {}, bit for bit the kernel's",
         report.width,
         report.height,
         report.spheres,
@@ -239,5 +301,6 @@ fn text(report: &Report) -> String {
         report.frames_a_second,
         report.regions,
         report.renderers,
+        report.image_crc32,
     )
 }

@@ -25,6 +25,10 @@ pub(super) struct Arguments {
     #[command(flatten)]
     threads: ThreadArguments,
 
+    /// Without the vector units that exact29 uses by itself; the picture is the same
+    #[arg(long)]
+    plain: bool,
+
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -42,6 +46,8 @@ struct Report {
     box_tests: u64,
     triangle_tests: u64,
     threads: usize,
+    /// The vector units that were used.
+    simd: Option<&'static str>,
     /// Of rendering alone.
     seconds: f64,
 }
@@ -62,7 +68,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let scene = arguments.scene.load()?;
     let pool = arguments.threads.pool()?;
     let begin = Instant::now();
-    let Rendered { picture, counts } = pool.install(|| picture(&scene))?;
+    let Rendered { picture, counts } = pool.install(|| picture(&scene, arguments.plain))?;
     let seconds = begin.elapsed().as_secs_f64();
     picture.write_png(&arguments.output)?;
     let report = Report {
@@ -79,6 +85,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         box_tests: counts.box_tests,
         triangle_tests: counts.triangle_tests,
         threads: pool.current_num_threads(),
+        simd: scene.engine.lanes().filter(|_| !arguments.plain),
         seconds,
     };
     if arguments.json {
@@ -100,11 +107,16 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     ))
 }
 
-/// Renders with a progress bar.
-pub(super) fn picture(scene: &Scene) -> Result<Rendered, Failure> {
+/// Renders with a progress bar; `is_plain` says without vector units.
+pub(super) fn picture(scene: &Scene, is_plain: bool) -> Result<Rendered, Failure> {
     let (header, _) = scene.engine.inspect(scene.blob.bytes())?;
     let bar = progress::bar("rendering", header.size.map(u64::from).iter().product());
-    let rendered = scene.engine.render(scene.blob.bytes(), TILE, &|pixels| bar.inc(pixels))?;
+    let (blob, progress) = (scene.blob.bytes(), |pixels| bar.inc(pixels));
+    let rendered = if is_plain {
+        scene.engine.render(blob, TILE, &progress)?
+    } else {
+        scene.engine.render_in_lanes(blob, TILE, &progress)?
+    };
     bar.finish_and_clear();
     Ok(rendered)
 }

@@ -9,7 +9,7 @@ use indicatif::ProgressBar;
 use super::failure::{Failure, note, warn};
 use super::input::size;
 use super::{output, progress};
-use crate::engine::ENGINES;
+use crate::engine::{ENGINES, PLANES12};
 use crate::report::page;
 use crate::report::plan::Selection;
 use crate::report::row::{Machine, Outcome, Study};
@@ -38,7 +38,7 @@ pub(super) struct Arguments {
     quick: bool,
 
     /// Measure this kernel; more than once for several [default: all]
-    #[arg(long, value_parser = PossibleValuesParser::new(ENGINES.map(|engine| engine.name())))]
+    #[arg(long, value_parser = PossibleValuesParser::new(ENGINES.into_iter().chain([PLANES12]).map(|engine| engine.name())))]
     kernel: Vec<String>,
 
     /// Measure on this machine; more than once for several [default: all]

@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::failure::{Failure, warn};
 use super::{output, progress};
 use crate::emulate;
-use crate::engine::{ENGINES, Engine};
+use crate::engine::{ENGINES, Engine, PLANES12};
 use crate::files;
 use crate::report::row::Machine;
 use crate::stress::chip::{self, Chip};
@@ -35,7 +35,7 @@ pub(super) struct Arguments {
     cases: Vec<String>,
 
     /// Only this kernel; may be given more than once
-    #[arg(long = "kernel", value_name = "K", value_parser = PossibleValuesParser::new(ENGINES.map(|engine| engine.name())))]
+    #[arg(long = "kernel", value_name = "K", value_parser = PossibleValuesParser::new(ENGINES.into_iter().chain([PLANES12]).map(|engine| engine.name())))]
     kernels: Vec<String>,
 
     /// Only on this machine; may be given more than once
@@ -75,9 +75,12 @@ struct Report<'a> {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let cases = chosen(&arguments.cases)?;
+    let [cases, of_spheres] = chosen(&arguments.cases)?;
     if arguments.list {
-        return cases.iter().try_for_each(|case| output::line(&format!("{:<24} {}", case.name, case.expectation)));
+        return cases
+            .iter()
+            .chain(&of_spheres)
+            .try_for_each(|case| output::line(&format!("{:<24} {}", case.name, case.expectation)));
     }
     if let Some(folder) = &arguments.output {
         // What is in it already is left alone.
@@ -87,14 +90,18 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let kernels: Vec<&'static dyn Engine> = ENGINES
         .into_iter()
+        .chain([PLANES12])
         .filter(|e| arguments.kernels.is_empty() || arguments.kernels.iter().any(|k| k == e.name()))
         .collect();
     let machines: Vec<Machine> = match arguments.machines.as_slice() {
         [] => vec![Machine::Host, Machine::Rv32imac, Machine::Thumbv6m],
         asked => asked.iter().map(|&name| name.into()).collect(),
     };
-    let bar = progress::bar("on the host", cases.len() as u64);
-    let done = suite::on_host(&cases, &kernels, &|| bar.inc(1));
+    let bar = progress::bar("on the host", (cases.len() + of_spheres.len()) as u64);
+    let mut done = suite::on_host(&cases, &kernels, &|| bar.inc(1));
+    if kernels.iter().any(|kernel| kernel.id() == PLANES12.id()) {
+        done.extend(suite::on_host(&of_spheres, &[PLANES12], &|| bar.inc(1)));
+    }
     bar.finish_and_clear();
     let chips = chips(&machines, &kernels, arguments.machines.is_empty())?;
     let bar = progress::bar("on chips", (chips.len() * done.len() / kernels.len().max(1)) as u64);
@@ -145,15 +152,16 @@ fn chips(
 }
 
 /// The cases of these names, or all.
-fn chosen(names: &[String]) -> Result<Vec<Case>, Failure> {
-    let all = cases::all();
+fn chosen(names: &[String]) -> Result<[Vec<Case>; 2], Failure> {
+    let all = [cases::all(), cases::of_spheres()];
     for name in names {
-        if !all.iter().any(|case| case.name == name) {
+        if !all.iter().flatten().any(|case| case.name == name) {
             return Err(Failure::input(format!(
                 "no case is called `{}`; `intray stress --list` lists them",
                 name.escape_debug()
             )));
         }
     }
-    Ok(all.into_iter().filter(|case| names.is_empty() || names.iter().any(|name| name == case.name)).collect())
+    let is_chosen = |case: &Case| names.is_empty() || names.iter().any(|name| name == case.name);
+    Ok(all.map(|cases| cases.into_iter().filter(is_chosen).collect()))
 }

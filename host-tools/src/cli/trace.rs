@@ -16,6 +16,7 @@ use super::input::{SceneArguments, ThreadArguments};
 use super::{output, progress};
 use crate::engine::ENGINES;
 use crate::files::{self, AtomicFile, FileError};
+use crate::planes::{self, trace::Tracer};
 use crate::reference::Reference;
 use crate::trace::{HITS_HEADER, Rays, Trace, write_hit};
 
@@ -34,7 +35,7 @@ const RUN: usize = 1 << 10;
 /// triangle's place in the file, from 0.
 #[derive(Debug, clap::Args)]
 #[command(mut_arg("kernel", |kernel| kernel
-    .value_parser(PossibleValuesParser::new(ENGINES.iter().map(|engine| engine.name()).chain([REFERENCE])))))]
+    .value_parser(PossibleValuesParser::new(ENGINES.iter().map(|engine| engine.name()).chain([planes::NAME, REFERENCE])))))]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
@@ -76,6 +77,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     if arguments.scene.kernel.as_deref() == Some(REFERENCE) {
         return trace(arguments, REFERENCE, &Reference::new(&arguments.scene.model_for_reference()?));
+    }
+    if arguments.scene.is_planes() {
+        let planes = super::planes::prepare(&arguments.scene)?.0;
+        return trace(arguments, planes::NAME, &Tracer::new(planes.scene()?, planes.place()));
     }
     let scene = arguments.scene.load()?;
     let tracer = scene.engine.tracer(scene.blob.bytes())?;

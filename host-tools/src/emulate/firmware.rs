@@ -129,20 +129,8 @@ impl Wanted<'_> {
         let damaged = EmulateError::Damaged("the blob has no header");
         let traits = Traits::of(self.blob).ok_or(damaged)?;
         check(self.board, &traits)?;
-        let repository = Repository::find()?;
-        let folder = repository.target().join("firmware");
-        fs::create_dir_all(&folder).map_err(EmulateError::folder)?;
-        let path = folder.join(format!("{}.elf", self.name(&traits, how)));
-        let origin_path = path.with_extension("origin");
-        // One at a time: cargo has one place for all profiles of a package.
-        let lock = File::create(folder.join("lock")).and_then(|file| file.lock().map(|()| file));
-        let _lock = lock.map_err(EmulateError::folder)?;
-        let origin = origin(repository.root(), self.board.package).map_err(EmulateError::folder)?;
-        if !path.is_file() || !fs::read_to_string(&origin_path).is_ok_and(|made_from| made_from == origin) {
-            self.build(&repository, &path, how)?;
-            files::write_atomically(&origin_path, origin.as_bytes())?;
-        }
-        Elf::read(&path, self.board)
+        let folders = ["core-rt", "float-rt", "firmware-rt", self.board.package];
+        kept(self.board, &self.name(&traits, how), &folders, |repository, path| self.build(repository, path, how))
     }
 
     /// Board, kernel, profile and transport.
@@ -200,6 +188,29 @@ impl Wanted<'_> {
     }
 }
 
+/// The firmware of a name, built where it is not there or was made from something else than what is in the folders now.
+pub(super) fn kept(
+    board: &Board,
+    name: &str,
+    folders: &[&str],
+    build: impl FnOnce(&Repository, &Path) -> Result<(), EmulateError>,
+) -> Result<Elf, EmulateError> {
+    let repository = Repository::find()?;
+    let folder = repository.target().join("firmware");
+    fs::create_dir_all(&folder).map_err(EmulateError::folder)?;
+    let path = folder.join(format!("{name}.elf"));
+    let origin_path = path.with_extension("origin");
+    // One at a time: cargo has one place for all profiles of a package.
+    let lock = File::create(folder.join("lock")).and_then(|file| file.lock().map(|()| file));
+    let _lock = lock.map_err(EmulateError::folder)?;
+    let origin = origin(repository.root(), folders).map_err(EmulateError::folder)?;
+    if !path.is_file() || !fs::read_to_string(&origin_path).is_ok_and(|made_from| made_from == origin) {
+        build(&repository, &path)?;
+        files::write_atomically(&origin_path, origin.as_bytes())?;
+    }
+    Elf::read(&path, board)
+}
+
 /// Whether the compiler has a library for the target. Asks rustc and not rustup: there are other packagings of Rust.
 fn has_library(target: &str) -> bool {
     let asked = Command::new("rustc")
@@ -212,9 +223,9 @@ fn has_library(target: &str) -> bool {
 }
 
 /// What firmware is made from: the compiler, and a checksum over the sources.
-fn origin(root: &Path, package: &str) -> io::Result<String> {
+fn origin(root: &Path, folders: &[&str]) -> io::Result<String> {
     let mut paths = vec![root.join("Cargo.toml"), root.join("Cargo.lock"), root.join(".cargo/config.toml")];
-    for folder in ["core-rt", "float-rt", "firmware-rt", package] {
+    for folder in folders {
         collect(&root.join(folder), &mut paths)?;
     }
     paths.sort();

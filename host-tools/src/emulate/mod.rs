@@ -13,6 +13,7 @@ pub mod frames;
 pub mod log;
 pub mod machine;
 pub mod parts;
+pub mod planes;
 pub mod probe;
 pub mod process;
 mod repository;

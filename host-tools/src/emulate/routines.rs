@@ -14,7 +14,7 @@ use object::{Endianness, Object, ObjectSection, SectionKind};
 /// What is in a file's path, the function (any of the file, if none is named), and the needs each of which asks for it.
 ///
 /// A need that is only a branch has no routine: emission, ambient light, linear pixels, widths, several lights.
-const ROUTINES: [(&str, Option<&str>, &[Need]); 42] = {
+const ROUTINES: [(&str, Option<&str>, &[Need]); 44] = {
     use Need::*;
     [
         ("core-rt/src/bvh.rs", Some("any"), &[Shadows]),

@@ -6,9 +6,12 @@
 //!
 //! Transfers overlap the step before, one after the other: outward if it does not use the value, inward if it leaves room for it.
 //! What does not end with that step is waited for.
+//!
+//! A processor takes each bit from wherever the instruction says, so a value lies in any bits that are free, the lowest first.
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::arithmetic::Places;
 use super::program::{Step, Value};
 
 /// The memory of a processor.
@@ -53,15 +56,39 @@ pub enum PlanError {
     },
 }
 
+/// A value on its way between the memory and the store.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Transfer {
+    /// What.
+    pub value: Value,
+    /// To the store, or from it.
+    pub is_outward: bool,
+    /// Its bits in the memory.
+    pub places: Vec<usize>,
+    /// Its first bit in the store.
+    pub home: usize,
+}
+
 /// What is in a processor's memory during a step.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Moment {
     /// The step.
     pub step: &'static str,
-    /// The values.
-    pub held: Vec<Value>,
-    /// Their bits, and those in between.
+    /// What went and came before it, in this order.
+    pub transfers: Vec<Transfer>,
+    /// Where the values are.
+    pub places: Places,
+    /// What the step has beside them.
+    pub scratch: Vec<usize>,
+    /// All bits that are used.
     pub bits: u32,
+}
+
+impl Moment {
+    /// The values in the memory.
+    pub fn held(&self) -> impl Iterator<Item = Value> {
+        self.places.keys().copied()
+    }
 }
 
 /// A plan.
@@ -88,16 +115,18 @@ impl Plan {
         let uses = next_reads(steps);
         let mut planner = Planner {
             store: *store,
-            held: BTreeMap::new(),
+            held: Places::new(),
+            free: (0..store.local_bits as usize).collect(),
             stored: BTreeSet::new(),
             homes: BTreeMap::new(),
+            end: 0,
             plan: Self { moments: Vec::new(), swapped: BTreeMap::new(), backing_bits: 0, blocks: [0; 2], waiting: 0 },
         };
         for (number, step) in steps.iter().enumerate() {
             let before = number.checked_sub(1).map(|before| &steps[before]);
             planner.step(step, before, &uses[number], cycles_per_bit)?;
         }
-        let needed = planner.homes.values().map(|bits| bits.div_ceil(store.block_bits) * store.block_bits).sum();
+        let needed = planner.end;
         if needed > store.backing_bits {
             return Err(PlanError::Backing { needed, backing: store.backing_bits });
         }
@@ -130,12 +159,15 @@ fn next_reads(steps: &[Step]) -> Vec<BTreeMap<Value, usize>> {
 
 struct Planner {
     store: Store,
-    /// Values in the processor's memory, and their bits.
-    held: BTreeMap<Value, u32>,
+    /// Values in the processor's memory.
+    held: Places,
+    /// What is left of it.
+    free: BTreeSet<usize>,
     /// Values that the store has as they are.
     stored: BTreeSet<Value>,
-    /// Values that have a place in the store, and their bits.
+    /// The places that values have in the store, and the end of the last, in whole blocks.
     homes: BTreeMap<Value, u32>,
+    end: u32,
     plan: Plan,
 }
 
@@ -151,53 +183,86 @@ impl Planner {
         let needed = wanted.values().sum::<u32>() + step.scratch;
         let local = self.store.local_bits;
         if needed > local {
-            return Err(PlanError::Step { step: step.name, needed, local });
+            return Err(PlanError::Step { step: step.operation.name(), needed, local });
         }
         // What nobody reads again is forgotten.
-        self.held.retain(|value, _| wanted.contains_key(value) || next.contains_key(value));
+        let free = &mut self.free;
+        self.held.retain(|value, places| {
+            let is_kept = wanted.contains_key(value) || next.contains_key(value);
+            if !is_kept {
+                free.extend(places.iter());
+            }
+            is_kept
+        });
         let was_free = local.saturating_sub(self.plan.moments.last().map_or(0, |moment| moment.bits));
         let (mut overlapping, mut blocking, mut room) = (0, 0, was_free);
+        let mut transfers = Vec::new();
         while needed + self.others(&wanted) > local {
-            let others = self.held.iter().filter(|(value, _)| !wanted.contains_key(value));
-            let farthest = others.max_by_key(|(value, _)| next.get(value)).map(|(value, bits)| (*value, *bits));
-            let Some((value, bits)) = farthest else { break };
-            self.held.remove(&value);
-            self.homes.insert(value, bits);
+            let others = self.held.keys().filter(|value| !wanted.contains_key(value));
+            let Some(value) = others.max_by_key(|value| next.get(value)).copied() else { break };
+            let places = self.held.remove(&value).unwrap_or_default();
+            self.free.extend(&places);
+            let home = self.home(value, places.len());
             if self.stored.insert(value) {
-                let blocks = self.transfer(value, bits, 0);
+                let blocks = self.count(value, places.len(), 0);
                 let is_used = before.is_some_and(|before| uses(before, value));
                 *(if is_used { &mut blocking } else { &mut overlapping }) += blocks;
+                transfers.push(Transfer { value, is_outward: true, places, home });
             }
         }
-        for &(value, bits) in &step.reads {
-            if !self.held.contains_key(&value) {
-                let blocks = self.transfer(value, bits, 1);
+        for (&value, &bits) in &wanted {
+            if self.held.contains_key(&value) {
+                continue;
+            }
+            let places = self.allocate(bits);
+            if step.reads.iter().any(|(read, _)| *read == value) {
+                let blocks = self.count(value, places.len(), 1);
                 let has_room = bits <= room;
                 room -= if has_room { bits } else { 0 };
                 *(if has_room { &mut overlapping } else { &mut blocking }) += blocks;
+                let home = self.home(value, places.len());
+                transfers.push(Transfer { value, is_outward: false, places: places.clone(), home });
             }
+            self.held.insert(value, places);
         }
-        self.held.extend(&wanted);
         for (value, _) in &step.writes {
             self.stored.remove(value);
         }
         let hidden = before.map_or(0, |before| before.bit_operations * cycles_per_bit);
         let cycles = |blocks: u64| blocks * self.store.block_cycles;
         self.plan.waiting += cycles(blocking) + cycles(overlapping).saturating_sub(hidden);
-        let held: Vec<Value> = self.held.keys().copied().collect();
-        let bits = self.held.values().sum::<u32>() + step.scratch;
-        self.plan.moments.push(Moment { step: step.name, held, bits });
+        let scratch: Vec<usize> = self.free.iter().take(step.scratch as usize).copied().collect();
+        let bits = (self.held.values().map(Vec::len).sum::<usize>() + scratch.len()) as u32;
+        let places = self.held.clone();
+        self.plan.moments.push(Moment { step: step.operation.name(), transfers, places, scratch, bits });
         Ok(())
     }
 
     /// Bits of what is held and not wanted.
     fn others(&self, wanted: &BTreeMap<Value, u32>) -> u32 {
-        self.held.iter().filter(|(value, _)| !wanted.contains_key(value)).map(|(_, bits)| bits).sum()
+        let others = self.held.iter().filter(|(value, _)| !wanted.contains_key(value));
+        others.map(|(_, places)| places.len() as u32).sum()
+    }
+
+    /// Takes the lowest bits that are free.
+    fn allocate(&mut self, bits: u32) -> Vec<usize> {
+        (0..bits).filter_map(|_| self.free.pop_first()).collect()
+    }
+
+    /// Where a value of so many bits is in the store.
+    fn home(&mut self, value: Value, bits: usize) -> usize {
+        let end = &mut self.end;
+        let home = *self.homes.entry(value).or_insert_with(|| {
+            let home = *end;
+            *end += (bits as u32).next_multiple_of(self.store.block_bits);
+            home
+        });
+        home as usize
     }
 
     /// Counts a transfer, outward (0) or inward (1); its blocks.
-    fn transfer(&mut self, value: Value, bits: u32, way: usize) -> u64 {
-        let blocks = u64::from(bits.div_ceil(self.store.block_bits));
+    fn count(&mut self, value: Value, bits: usize, way: usize) -> u64 {
+        let blocks = (bits as u64).div_ceil(self.store.block_bits.into());
         self.plan.swapped.entry(value).or_default()[way] += 1;
         self.plan.blocks[way] += blocks;
         blocks

@@ -1,11 +1,12 @@
-//! The program that all processors run, a step at a time: what it reads and writes, and how many operations on single bits it
-//! takes.
+//! The program that all processors run, a step at a time: what each reads and writes, and what it takes.
 //!
-//! Adding or comparing n bits takes n operations, a product n m, a quotient as many as its dividend's bits times its divisor's, a
-//! root half its bits times as many digits. Spheres are broadcast with the instructions, and take no memory.
+//! A step's operations and the bits that it needs in between are those of running it once, on processors without any values: they
+//! depend on the words' widths alone. Spheres are broadcast with the instructions, and take no memory.
 
 use planes_rt::scene::Outline;
 use planes_rt::widths::Widths;
+
+use super::arithmetic::{self, Effort};
 
 /// A value that a processor holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -14,7 +15,7 @@ pub enum Value {
     Origin,
     /// Its direction, three components.
     Direction,
-    /// Whether the pixel goes on, and whether it takes part now: two bits.
+    /// Whether the pixel goes on, and whether it still looks for a sphere in this generation: two bits.
     Masks,
     /// |d|^2.
     A,
@@ -26,9 +27,9 @@ pub enum Value {
     C,
     /// b^2 - a c, twice as wide as a product.
     Difference,
-    /// The same as its word holds it.
+    /// The same as its word holds it, without a sign.
     Determinant,
-    /// Its root.
+    /// Its root, without a sign.
     Root,
     /// -b - root.
     Numerator,
@@ -36,7 +37,7 @@ pub enum Value {
     T,
     /// The least t so far.
     LeastT,
-    /// Which sphere it is of.
+    /// Which sphere it is of; as many as there are for none.
     Nearest,
     /// The normal, three components.
     Normal,
@@ -68,7 +69,7 @@ pub struct Shape {
 }
 
 /// Bits of a colour's channel, of a share and of a cosine.
-const LIGHT_BITS: u32 = 12;
+pub(super) const LIGHT_BITS: u32 = 12;
 
 impl Shape {
     /// Bits of a value.
@@ -92,11 +93,133 @@ impl Shape {
     }
 }
 
+/// What a step does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Operation {
+    /// The tree that spans all processors leaves each the ray of its pixel (the machine works out what is linear in a pixel's place
+    /// by itself); nothing is seen yet.
+    CameraRay,
+    /// |d|^2.
+    A,
+    /// No sphere yet, in this generation.
+    Begin,
+    /// o - c, for those that look for a sphere.
+    Offset,
+    /// d . s; disables those whose sphere is behind.
+    B,
+    /// |s|^2 - r^2.
+    C,
+    /// b^2 - a c; disables those that miss.
+    Difference,
+    /// Its word.
+    Hold,
+    /// Its root.
+    Root,
+    /// -b - root; disables those that are inside.
+    Numerator,
+    /// t.
+    T,
+    /// Disables those that met a nearer sphere; the others met this one.
+    Nearer,
+    /// Enables those that met this sphere.
+    Enable,
+    /// o + t d.
+    Point,
+    /// The point without the centre.
+    Normal,
+    /// The cosine to the light.
+    Cosine,
+    /// What is seen.
+    Shade,
+    /// What is still seen; those that see nothing any more are done.
+    Mirror,
+    /// Those that met no sphere see what is behind all, and are done.
+    Background,
+    /// d . n.
+    Along,
+    /// |n|^2.
+    Square,
+    /// 2 d . n / |n|^2.
+    Quotient,
+    /// d - 2 (d . n) n / |n|^2.
+    Reflect,
+    /// What was seen leaves for the frame buffer, which is not modelled.
+    Show,
+}
+
+impl Operation {
+    /// Its name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::CameraRay => "camera ray",
+            Self::A => "a = d . d",
+            Self::Begin => "least t = most",
+            Self::Offset => "s = o - c",
+            Self::B => "b = d . s",
+            Self::C => "c = s . s - r^2",
+            Self::Difference => "b^2 - a c",
+            Self::Hold => "hold",
+            Self::Root => "root",
+            Self::Numerator => "-b - root",
+            Self::T => "t",
+            Self::Nearer => "nearer",
+            Self::Enable => "enable where nearest",
+            Self::Point => "point = o + t d",
+            Self::Normal => "normal = point - c",
+            Self::Cosine => "normal . light",
+            Self::Shade => "shade",
+            Self::Mirror => "mirror",
+            Self::Background => "background",
+            Self::Along => "d . n",
+            Self::Square => "n . n",
+            Self::Quotient => "2 d . n / n . n",
+            Self::Reflect => "reflection",
+            Self::Show => "picture",
+        }
+    }
+
+    /// The values that it needs and those that it makes, or makes anew for some processors. `is_first` where no processor has a
+    /// normal yet.
+    const fn values(self, is_first: bool) -> (&'static [Value], &'static [Value]) {
+        use Value::*;
+        match self {
+            Self::CameraRay => (&[], &[Origin, Direction, Light, Share, Masks]),
+            Self::A => (&[Direction, Masks], &[A]),
+            Self::Begin => (&[Masks], &[LeastT, Nearest, Masks]),
+            Self::Offset => (&[Origin, Masks], &[Offset]),
+            Self::B => (&[Direction, Offset], &[B]),
+            Self::C => (&[Offset], &[C]),
+            Self::Difference => (&[A, B, C], &[Difference]),
+            Self::Hold => (&[Difference], &[Determinant]),
+            Self::Root => (&[Determinant], &[Root]),
+            Self::Numerator => (&[B, Root], &[Numerator]),
+            Self::T => (&[Numerator, A], &[T]),
+            Self::Nearer => (&[T, LeastT, Nearest], &[LeastT, Nearest]),
+            Self::Enable => (&[Nearest, Masks], &[]),
+            Self::Point => (&[Origin, Direction, LeastT], &[Origin]),
+            Self::Normal if is_first => (&[Origin], &[Normal]),
+            Self::Normal => (&[Origin, Normal], &[Normal]),
+            Self::Cosine => (&[Normal], &[Cosine]),
+            Self::Shade => (&[Cosine, Light, Share], &[Light]),
+            Self::Mirror => (&[Share, Masks], &[Share, Masks]),
+            Self::Background => (&[Light, Share, Nearest, Masks], &[Light, Masks]),
+            Self::Along => (&[Direction, Normal, Masks], &[Along]),
+            Self::Square => (&[Normal], &[Square]),
+            Self::Quotient => (&[Along, Square], &[Quotient]),
+            Self::Reflect => (&[Direction, Normal, Quotient], &[Direction]),
+            Self::Show => (&[Light], &[]),
+        }
+    }
+}
+
 /// One step.
 #[derive(Clone, Debug)]
 pub struct Step {
     /// What it does.
-    pub name: &'static str,
+    pub operation: Operation,
+    /// The number of the sphere that it is about, where it is about one.
+    pub sphere: usize,
     /// The values that it needs, with their bits.
     pub reads: Vec<(Value, u32)>,
     /// The values that it makes, or makes anew.
@@ -111,12 +234,30 @@ pub struct Step {
 #[must_use]
 pub fn program(shape: &Shape) -> Vec<Step> {
     let mut writer = Writer { shape: *shape, steps: Vec::new() };
-    writer.start();
+    writer.step(Operation::CameraRay, 0);
     for _ in 0..shape.generations {
         writer.generation();
     }
+    writer.step(Operation::Show, 0);
     writer.steps
 }
+
+const INTERSECT: [Operation; 9] = [
+    Operation::Offset,
+    Operation::B,
+    Operation::C,
+    Operation::Difference,
+    Operation::Hold,
+    Operation::Root,
+    Operation::Numerator,
+    Operation::T,
+    Operation::Nearer,
+];
+
+const SHADE: [Operation; 5] =
+    [Operation::Point, Operation::Normal, Operation::Cosine, Operation::Shade, Operation::Mirror];
+
+const REFLECT: [Operation; 4] = [Operation::Along, Operation::Square, Operation::Quotient, Operation::Reflect];
 
 struct Writer {
     shape: Shape,
@@ -124,94 +265,46 @@ struct Writer {
 }
 
 impl Writer {
-    fn step(&mut self, name: &'static str, reads: &[Value], writes: &[Value], scratch: u32, bit_operations: u32) {
-        let sized = |values: &[Value]| values.iter().map(|&value| (value, self.shape.bits(value))).collect();
-        let (mut reads, writes): (Vec<_>, Vec<_>) = (sized(reads), sized(writes));
-        reads.push((Value::Masks, self.shape.bits(Value::Masks)));
-        self.steps.push(Step { name, reads, writes, scratch, bit_operations: bit_operations.into() });
+    fn step(&mut self, operation: Operation, sphere: usize) {
+        let shape = self.shape;
+        let sized = |values: &[Value]| values.iter().map(|&value| (value, shape.bits(value))).collect();
+        let (reads, writes) = operation.values(sphere == 0);
+        let (reads, writes): (Vec<_>, Vec<_>) = (sized(reads), sized(writes));
+        // What it takes depends on the operation and the widths alone, and most were written before.
+        let known = self.steps.iter().find(|step| (step.operation, step.sphere == 0) == (operation, sphere == 0));
+        let effort = known.map_or_else(
+            || arithmetic::effort(operation, &shape, &reads, &writes),
+            |step| Effort { scratch: step.scratch, bit_operations: step.bit_operations },
+        );
+        let Effort { scratch, bit_operations } = effort;
+        self.steps.push(Step { operation, sphere, reads, writes, scratch, bit_operations });
     }
 
-    fn start(&mut self) {
-        let component = self.shape.widths.coordinate();
-        let of_a_pixel = [Value::Origin, Value::Direction, Value::Light, Value::Share, Value::Masks];
-        self.step("camera ray", &[], &of_a_pixel, component, 6 * component);
-        // Nothing is held before.
-        if let Some(first) = self.steps.first_mut() {
-            first.reads.clear();
-        }
+    fn all(&mut self, operations: &[Operation], sphere: usize) {
+        operations.iter().for_each(|&operation| self.step(operation, sphere));
     }
 
     fn generation(&mut self) {
-        let (coordinate, product) = (self.shape.widths.coordinate(), self.shape.widths.product());
-        self.step("a = d . d", &[Value::Direction], &[Value::A], 0, 3 * coordinate * coordinate + product);
-        self.step("least t = most", &[], &[Value::LeastT, Value::Nearest], 0, product);
-        for _ in 0..self.shape.spheres {
-            self.intersect();
-            if self.shape.outline == Outline::Literal {
-                self.shade();
-                self.reflect();
+        self.all(&[Operation::A, Operation::Begin], 0);
+        let spheres = self.shape.spheres as usize;
+        match self.shape.outline {
+            Outline::Literal => {
+                for sphere in 0..spheres {
+                    self.all(&INTERSECT, sphere);
+                    self.all(&SHADE, sphere);
+                    self.all(&REFLECT, sphere);
+                }
+                self.step(Operation::Background, 0);
+            }
+            Outline::Nearest => {
+                (0..spheres).for_each(|sphere| self.all(&INTERSECT, sphere));
+                for sphere in 0..spheres {
+                    self.step(Operation::Enable, sphere);
+                    self.all(&SHADE, sphere);
+                }
+                self.step(Operation::Background, 0);
+                self.all(&REFLECT, 0);
             }
         }
-        if self.shape.outline == Outline::Nearest {
-            for _ in 0..self.shape.spheres {
-                let number = self.shape.bits(Value::Nearest);
-                self.step("enable where nearest", &[Value::Nearest], &[Value::Masks], 0, number);
-                self.shade();
-            }
-            self.reflect();
-        }
-        let light = 3 * LIGHT_BITS * (LIGHT_BITS + 1);
-        let background = [Value::Light, Value::Share, Value::Nearest];
-        self.step("background", &background, &[Value::Light, Value::Masks], 2 * LIGHT_BITS, light);
-    }
-
-    fn intersect(&mut self) {
-        let widths = self.shape.widths;
-        let (coordinate, product) = (widths.coordinate(), widths.product());
-        let dot = 3 * coordinate * coordinate + product;
-        let masks = Value::Masks;
-        self.step("s = o - c", &[Value::Origin], &[Value::Offset], 0, 3 * coordinate);
-        self.step("b = d . s", &[Value::Direction, Value::Offset], &[Value::B], 0, dot);
-        self.step("c = s . s - r^2", &[Value::Offset], &[Value::C], 0, dot + product);
-        let factors = [Value::A, Value::B, Value::C];
-        self.step("b^2 - a c", &factors, &[Value::Difference, masks], 0, 2 * product * product);
-        self.step("hold", &[Value::Difference], &[Value::Determinant], 0, widths.determinant());
-        // The root asks for as many bits for input, output and in between.
-        let (determinant, root) = (widths.determinant(), widths.determinant().div_ceil(2));
-        let between = 2 * determinant - root;
-        self.step("root", &[Value::Determinant], &[Value::Root], between, root * (root + 2));
-        self.step("-b - root", &[Value::B, Value::Root], &[Value::Numerator, masks], 0, product);
-        let dividend = product + widths.t_fraction();
-        self.step("t", &[Value::Numerator, Value::A], &[Value::T], dividend, dividend * product);
-        let compared = [Value::T, Value::LeastT, Value::Nearest];
-        self.step("nearer", &compared, &[Value::LeastT, Value::Nearest, masks], 0, 2 * product);
-    }
-
-    fn shade(&mut self) {
-        let (coordinate, product) = (self.shape.widths.coordinate(), self.shape.widths.product());
-        let along = coordinate + product;
-        let ray = [Value::Origin, Value::Direction, Value::LeastT];
-        self.step("point = o + t d", &ray, &[Value::Origin], along, 3 * (coordinate * product + coordinate));
-        self.step("normal = point - c", &[Value::Origin], &[Value::Normal], 0, 3 * coordinate);
-        let brightness = 3 * coordinate * coordinate + product + product * LIGHT_BITS;
-        self.step("normal . light", &[Value::Normal], &[Value::Cosine], product, brightness);
-        let light = 3 * (2 * LIGHT_BITS * LIGHT_BITS + LIGHT_BITS);
-        let seen = [Value::Cosine, Value::Light, Value::Share];
-        self.step("shade", &seen, &[Value::Light], 2 * LIGHT_BITS, light);
-        let share = 3 * LIGHT_BITS * LIGHT_BITS;
-        self.step("mirror", &[Value::Share], &[Value::Share, Value::Masks], 2 * LIGHT_BITS, share);
-    }
-
-    fn reflect(&mut self) {
-        let (coordinate, product) = (self.shape.widths.coordinate(), self.shape.widths.product());
-        let dot = 3 * coordinate * coordinate + product;
-        self.step("d . n", &[Value::Direction, Value::Normal], &[Value::Along], 0, dot);
-        self.step("n . n", &[Value::Normal], &[Value::Square], 0, dot);
-        let dividend = product + coordinate;
-        let quotient = [Value::Along, Value::Square];
-        self.step("2 d . n / n . n", &quotient, &[Value::Quotient], dividend, dividend * product);
-        let turned = [Value::Direction, Value::Normal, Value::Quotient];
-        let bits = self.shape.bits(Value::Quotient);
-        self.step("reflection", &turned, &[Value::Direction], bits + coordinate, 3 * (bits * coordinate + coordinate));
     }
 }

@@ -6,6 +6,7 @@ use planes_rt::colour::{LIGHT_MAX, SHARE_ONE, Surface};
 use planes_rt::scene::{Outline, Scene, SceneError, Settings, Sphere};
 use planes_rt::widths::Widths;
 
+use crate::grid::Grid;
 use crate::model::{Background, LightKind, Material, MaterialKind, Model, Projection};
 use crate::plane::Plane;
 
@@ -68,6 +69,8 @@ pub struct Planes {
     settings: Settings,
     /// Components' units a scene unit.
     pub scale: f64,
+    /// What components of zero stand for.
+    middle: DVec3,
     /// What of the model is shown plainer than it is.
     pub warnings: Vec<String>,
 }
@@ -120,10 +123,17 @@ impl Planes {
             camera: camera(model, &place, options.direction),
             settings,
             scale: place.scale,
+            middle: place.middle,
             warnings,
         };
         planes.scene()?;
         Ok(planes)
+    }
+
+    /// How its components lie in the model's space.
+    #[must_use]
+    pub fn place(&self) -> Grid {
+        Grid { origin: self.middle, scale: self.scale }
     }
 
     /// What is traced.

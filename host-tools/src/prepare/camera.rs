@@ -16,7 +16,7 @@ const FRACTION_BITS: u8 = 16;
 const LENGTHS: i64 = 1 << 12;
 
 /// The camera for the model's picture size and number of samples.
-pub(super) fn camera<K: Kernel>(model: &Model, grid: &Grid) -> CameraHeader {
+pub(crate) fn camera<K: Kernel>(model: &Model, grid: &Grid) -> CameraHeader {
     match model.camera.projection {
         Projection::Perspective { fov_y } => perspective::<K>(model, fov_y, grid),
         Projection::Orthographic { height } => parallel::<K>(model, &Plane::new(model, height), grid),

@@ -55,7 +55,7 @@ pub(super) fn unit_q30(direction: DVec3) -> [i32; 3] {
 }
 
 /// A light as the blob has it.
-pub(super) fn light(light: &model::Light, grid: &Grid) -> Light {
+pub(crate) fn light(light: &model::Light, grid: &Grid) -> Light {
     let (kind, place) = match light.kind {
         LightKind::Point(position) => (Light::POINT, grid.place(position)),
         LightKind::Directional(direction) => (Light::DIRECTIONAL, unit_q30(-direction)),

@@ -10,7 +10,8 @@ use super::row::{Cost, Instructions, Machine, Measured};
 use super::trouble::Trouble;
 use crate::emulate::counter::Counter;
 use crate::emulate::firmware::{self, Wanted};
-use crate::emulate::{self, EmulateError, Outcome, Run, machine, room};
+use crate::emulate::{self, EmulateError, Outcome, Run, machine, planes, room};
+use crate::engine::PLANES12;
 
 /// The chips that can be emulated here.
 #[derive(Debug)]
@@ -46,11 +47,15 @@ impl Chips {
         };
         let Picked { engine, blob, picture, measured } = picked;
         let blob = blob.bytes();
-        let traits = Traits::of(blob).ok_or_else(|| Trouble::Broken("the blob has no header".into()))?;
-        firmware::check(board, &traits).map_err(Trouble::emulate)?;
+        let is_planes = engine.id() == PLANES12.id();
+        if !is_planes {
+            let traits = Traits::of(blob).ok_or_else(|| Trouble::Broken("the blob has no header".into()))?;
+            firmware::check(board, &traits).map_err(Trouble::emulate)?;
+        }
         let help = || "fewer triangles, or the kernel exact14, whose records are the smallest".into();
-        room(board, board.blob(engine.id()), blob.len() as u64, help).map_err(Trouble::emulate)?;
-        let elf = Wanted { board, blob, hits: None, count: false }.provide().map_err(Trouble::emulate)?;
+        room(board, planes::place(board, engine.id()), blob.len() as u64, help).map_err(Trouble::emulate)?;
+        let wanted = Wanted { board, blob, hits: None, count: false };
+        let elf = if is_planes { planes::provide(board) } else { wanted.provide() }.map_err(Trouble::emulate)?;
         let run = Run { board, elf: &elf, blob: Some(blob), counter: Some(counter), limit: self.limit };
         let Outcome { picture: drawn, report, counts } = run.perform(&mut Vec::new()).map_err(Trouble::emulate)?;
         if drawn != picture {

@@ -8,7 +8,7 @@ use std::fmt::{self, Display, Formatter};
 use clap::ValueEnum;
 
 use super::row::{Machine, Point, Study, name};
-use crate::engine::ENGINES;
+use crate::engine::{ENGINES, PLANES12};
 
 /// What is asked for. An empty list asks for all that there are.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -99,7 +99,10 @@ fn of_machine(scene: &Traits, selection: &Selection, machine: Machine) -> Vec<Po
         if sizes[..place].contains(&size) {
             continue;
         }
-        all.extend(ENGINES.map(|engine| point(scene, Study::Kernels, engine.name(), machine, size)));
+        // It has spheres alone.
+        let planes = (scene.triangles == 0 && scene.samples == 1).then_some(PLANES12);
+        let kernels = ENGINES.into_iter().chain(planes);
+        all.extend(kernels.map(|engine| point(scene, Study::Kernels, engine.name(), machine, size)));
     }
     let size = sizes.into_iter().min_by_key(|&[width, height]| u64::from(width) * u64::from(height)).unwrap_or(small);
     let of = |study, kernel: &str| point(scene, study, kernel, machine, size);

@@ -19,8 +19,8 @@ use crate::emulate::counter::Counter;
 use crate::emulate::elf::Elf;
 use crate::emulate::firmware::Wanted;
 use crate::emulate::machine::Machine as Emulator;
-use crate::emulate::{EmulateError, Run, room};
-use crate::engine::Engine;
+use crate::emulate::{EmulateError, Run, planes, room};
+use crate::engine::{Engine, PLANES12};
 use crate::model::{LightKind, Model, Projection, Sphere};
 use crate::report::row::Machine;
 
@@ -75,6 +75,10 @@ impl Chip {
     pub fn provide(board: &'static Board, engine: &'static dyn Engine, cases: &[Case]) -> Result<Self, EmulateError> {
         let emulator = Emulator::of(board)?;
         emulator.version()?;
+        if engine.id() == PLANES12.id() {
+            let elf = planes::provide(board)?;
+            return Ok(Self { board, engine, elf, counter: Counter::provide(&emulator).ok(), depth: u32::MAX });
+        }
         let depth = depth(engine.name(), board);
         let needing = union(cases, depth);
         // What it needs stands in its header, and a chip never sees it.
@@ -101,7 +105,7 @@ impl Chip {
             return refused("it is for a host alone".into());
         }
         let bytes = drawn.blob.bytes();
-        let place = self.board.blob(self.engine.id());
+        let place = planes::place(self.board, self.engine.id());
         if let Err(error) = room(self.board, place, bytes.len() as u64, || "a smaller scene".into()) {
             return refused(error.to_string());
         }

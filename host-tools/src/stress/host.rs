@@ -13,7 +13,7 @@ use crate::compare::difference;
 use crate::engine::Engine;
 use crate::model::Model;
 use crate::picture::Picture;
-use crate::prepare::{Blob, Options, losses};
+use crate::prepare::{Blob, Options};
 use crate::reference::{Reference, Sample, encode};
 use crate::report::row::Machine;
 use crate::tree::TreeOptions;
@@ -109,8 +109,7 @@ fn one(case: &Case, subject: &Subject, reference: &Reference<'_>, truth: &[Sampl
         Ok(prepared) => prepared,
         Err(error) => return blank(Outcome::Refused, error.to_string()),
     };
-    let warnings = losses(engine.name(), engine.grid_bits(), engine.radius_min(), model, &prepared.grid);
-    let warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+    let warnings = engine.losses(model, &prepared.grid);
     let (rendered, seen) = match engine.witness(prepared.blob.bytes(), TILE, &|_| {}) {
         Ok(witnessed) => witnessed,
         Err(error) => return blank(Outcome::Fail, format!("its own blob is refused: {error}")),

@@ -10,6 +10,8 @@
 //!   `float_rt::format`, 9 units at most. Its edges are decided with an error too, so that a pixel in a thousand may stray.
 //! - Of rays that look for trouble, through vertices and along edges, the exact kernels lose none. The others decide edges with
 //!   an error, and promise nothing of a ray that goes through one: those that stray are counted, and not judged.
+//! - `planes12`: normals are as good as their spheres are large, and there are no shadows. Nothing is promised of its pictures but
+//!   that all machines draw the same; pixels that stray are counted.
 
 /// sqrt(3)/2: the farthest that rounding to a grid moves a point, grid units.
 const ROUNDED: f64 = 0.866_025_403_784_438_6;
@@ -69,6 +71,7 @@ impl Promise {
                 edges: false,
                 ..wide
             },
+            "planes12" => Self { strays: 1.0, edges: false, ..wide },
             "f64" => Self { between: ROUNDED, edges: false, ..wide },
             _ => Self {
                 seen: 2.0 * ROUNDED,

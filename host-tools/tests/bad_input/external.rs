@@ -1,4 +1,5 @@
-//! `intray fit`, which is a program of its own: where it is absent, and what it is given where it is there.
+//! `intray fit` and `intray view`, which are programs of their own: where they are absent, and what they are given where they are
+//! there.
 #![cfg(unix)]
 
 use std::fs;
@@ -25,23 +26,29 @@ fn script(path: &Path, says: &str, status: i32) {
 fn where_it_is_absent_the_command_that_installs_it_is_said() {
     let folder = Folder::with_triangle();
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").canonicalize().unwrap();
-    let expected = format!(
-        "error: `intray fit` is a program of its own, intray-fit, which has the memory maps of some 4,000 chips in it, and it \
-         is neither beside this program nor on the PATH; `cargo install --path {}` installs it\n",
-        root.join("chip-fit").display()
-    );
     let intray = apart(&folder);
-    for line in ["fit scene.obj", "fit --help", "fit"] {
-        let output = Command::new(&intray)
-            .args(line.split(' '))
-            .current_dir(folder.path(""))
-            .env("PATH", folder.path(""))
-            .output()
-            .unwrap();
-        assert_eq!((text(&output.stderr), output.status.code()), (expected.clone(), Some(2)), "{line}");
-        assert_eq!(text(&output.stdout), "");
+    for (verb, reason, package) in [
+        ("fit", "has the memory maps of some 4,000 chips in it", "chip-fit"),
+        ("view", "brings what windows, fonts and gamepads take", "view"),
+    ] {
+        let expected = format!(
+            "error: `intray {verb}` is a program of its own, intray-{verb}, which {reason}, and it is neither beside this \
+             program nor on the PATH; `cargo install --path {}` installs it\n",
+            root.join(package).display()
+        );
+        for rest in [&["scene.obj"][..], &["--help"], &[]] {
+            let output = Command::new(&intray)
+                .arg(verb)
+                .args(rest)
+                .current_dir(folder.path(""))
+                .env("PATH", folder.path(""))
+                .output()
+                .unwrap();
+            assert_eq!((text(&output.stderr), output.status.code()), (expected.clone(), Some(2)), "{verb} {rest:?}");
+            assert_eq!(text(&output.stdout), "");
+        }
+        assert!(root.join(package).join("Cargo.toml").is_file());
     }
-    assert!(root.join("chip-fit/Cargo.toml").is_file());
 }
 
 #[test]

@@ -15,7 +15,12 @@ fn scenes_that_it_does_not_know() {
     spheres.succeeds("render scene.toml --kernel planes12 -o out.png", "");
     spheres.succeeds("pixel-planes scene.toml -o out.png", "");
     let triangles = folder("model = \"a.obj\"\n");
-    for line in ["render scene.toml --kernel planes12 -o out.png", "pixel-planes scene.toml"] {
+    for line in [
+        "render scene.toml --kernel planes12 -o out.png",
+        "pixel-planes scene.toml",
+        "trace scene.toml --kernel planes12 --rays - -o out.csv",
+        "emulate scene.toml --kernel planes12 --board microbit -o out.png",
+    ] {
         triangles.refuses(
             line,
             "error: scene.toml: planes12 traces spheres alone, and the scene has 1 triangles; use --kernel exact29, or exact14 for \
@@ -24,7 +29,11 @@ fn scenes_that_it_does_not_know() {
     }
     spheres.refuses(
         "prep scene.toml --kernel planes12 -o out.blob",
-        "error: planes12 makes pictures by `render`, and has no blob yet; choose another kernel\n",
+        "error: planes12 is known to render, trace, emulate, report, stress and pixel-planes; choose another kernel\n",
+    );
+    spheres.refuses(
+        "emulate scene.toml --kernel planes12 --board microbit --hits tile -o out.png",
+        "error: --hits and --breakdown are of kernels with a tree; planes12 has neither\n",
     );
     spheres.refuses(
         "render scene.toml --kernel planes12 --samples 4 -o out.png",
@@ -39,9 +48,9 @@ fn machines_that_there_cannot_be() {
     for (arguments, error) in [
         (
             "--local-bits 100",
-            "scene.toml: `camera ray` needs 158 bits at once, and a processor has 100; widen it or narrow the words",
+            "scene.toml: `camera ray` needs 146 bits at once, and a processor has 100; widen it or narrow the words",
         ),
-        ("--backing-bits 32", "scene.toml: 256 bits are swapped out, and the backing store has 32"),
+        ("--backing-bits 32", "scene.toml: 352 bits are swapped out, and the backing store has 32"),
         ("--coordinate-bits 16", "components of 16 bits; there are 4 to 15"),
         ("--t-bits 11", "a fraction of t of 11 bits; there are 0 to 10"),
         (

@@ -1,6 +1,7 @@
 //! Headers with values out of range, and what they say of the sections.
 
 use core_rt::blob::{BlobError, Header, PREFIX_SIZE};
+use core_rt::bvh::InPlace;
 use core_rt::kernel::Kernel;
 use core_rt::profile::{Need, Needs, Profile};
 use core_rt::scene::Scene;
@@ -129,6 +130,7 @@ struct Smaller<K>(core::marker::PhantomData<K>);
 
 impl<K: Kernel> Profile for Smaller<K> {
     type Kernel = K;
+    type Walk<'a> = InPlace;
     const NEEDS: Needs = Needs::from_bits(Needs::ALL.bits() & !(Need::DirectionalLight as u64));
 }
 

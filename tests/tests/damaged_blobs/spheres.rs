@@ -1,7 +1,7 @@
 //! Spheres that no scene has, and those at the ends of what the kernels hold.
 
 use core_rt::blob::BlobError;
-use core_rt::bvh::Child;
+use core_rt::bvh::{Child, InPlace};
 use core_rt::kernel::{Bounds, Kernel};
 use core_rt::profile::{Full, Need, Needs, Profile};
 use core_rt::record::Light;
@@ -118,6 +118,7 @@ struct Flat<K>(core::marker::PhantomData<K>);
 
 impl<K: Kernel> Profile for Flat<K> {
     type Kernel = K;
+    type Walk<'a> = InPlace;
     const NEEDS: Needs = Needs::from_bits(Needs::ALL.bits() & !(Need::Spheres as u64));
 }
 

@@ -1,6 +1,8 @@
 //! The tracer of 1994 against integers without a width, against itself in lockstep, and its scenes.
 
+mod chips;
 mod exact;
+mod machine;
 mod model;
 mod scenes;
 

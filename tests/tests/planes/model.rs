@@ -4,8 +4,10 @@ use glam::DVec3;
 use host_tools::compare::compare;
 use host_tools::model::{Background, Light, LightKind, Material, MaterialKind, Model, Projection, Sphere, Triangle};
 use host_tools::planes::scene::{Options, Planes, PlanesError};
+use host_tools::planes::trace::Tracer;
 use host_tools::planes::{Way, light, picture};
 use host_tools::reference::Reference;
+use host_tools::trace::Trace;
 use planes_rt::widths::Widths;
 use planes_simd::Lockstep;
 
@@ -103,4 +105,37 @@ fn what_is_shown_plainer_is_said() {
     let sky = Background::Sky { bottom: DVec3::ZERO, top: DVec3::ONE };
     assert!(warnings(&|model| model.background = sky, 511).contains("one colour"));
     assert!(warnings(&|_| (), 2047).contains("saturates"));
+}
+
+#[test]
+fn rays_of_one_s_own_meet_what_the_reference_meets_from_anywhere() {
+    let model = model();
+    let planes = Planes::new(&model, &Options::default()).unwrap();
+    let tracer = Tracer::new(planes.scene().unwrap(), planes.place());
+    let reference = Reference::new(&model);
+    let (mut met, mut apart) = (0, 0);
+    for step in 0..400 {
+        let target = DVec3::new(f64::from(step % 20) / 4.0 - 2.5, f64::from(step / 20) / 8.0 - 1.25, 0.0);
+        let direction = (target - model.camera.position) * 1e-3;
+        // Far beyond what components hold, too.
+        for back in [0.0, 3.0, 1e6] {
+            let origin = model.camera.position - direction * (1e3 * back);
+            let found = tracer.nearest(origin, direction);
+            let expected = reference.nearest(origin, direction);
+            match (found, expected) {
+                (Some(found), Some(expected)) if found.prim == expected.prim => {
+                    // Along a sphere's edge, half a unit of 511 across is much more in depth.
+                    let off = (found.t - expected.t).abs() * direction.length();
+                    assert!(off < 0.3, "{target} {back}: {} and {}", found.t, expected.t);
+                    met += 1;
+                }
+                (None, None) => (),
+                _ => apart += 1,
+            }
+        }
+    }
+    assert!(met > 500 && apart < met / 20, "{met} {apart}");
+    assert_eq!(tracer.nearest(DVec3::splat(1e9), DVec3::X), None);
+    assert_eq!(tracer.nearest(model.camera.position, DVec3::ZERO), None);
+    assert_eq!(tracer.nearest(DVec3::NAN, DVec3::X), None);
 }

@@ -8,7 +8,7 @@ use crate::fuzz;
 use crate::qemu::QEMU;
 use crate::steps::Step;
 use crate::task::Task;
-use crate::tool::{CARGO_FUZZ, CHROMIUM, CLIPPY, IMAGEMAGICK, NIGHTLY, RISCV32IMAC, RUSTFMT, THUMBV6M, Tool};
+use crate::tool::{CARGO_FUZZ, CHROMIUM, CLIPPY, IMAGEMAGICK, NIGHTLY, RISCV32IMAC, RUSTFMT, THUMBV6M, Tool, XVFB};
 
 /// Seconds of fuzzing a target.
 const FUZZ_SECONDS: u32 = 20;
@@ -31,7 +31,7 @@ pub(crate) fn steps(long: bool) -> Vec<Step> {
         Step::new(
             "documentation",
             Task::new(
-                "cargo doc --no-deps -p core-rt -p float-rt -p host-tools -p chip-fit -p planes-rt -p planes-simd",
+                "cargo doc --no-deps -p core-rt -p float-rt -p host-tools -p chip-fit -p planes-rt -p planes-simd -p view",
             )
             .with("RUSTDOCFLAGS", "-D warnings"),
         ),
@@ -45,7 +45,7 @@ pub(crate) fn steps(long: bool) -> Vec<Step> {
         .needing(&[THUMBV6M, RISCV32IMAC]),
     ];
     for (package, target, tools) in FIRMWARE {
-        for features in ["", " --features rtt"] {
+        for features in ["", " --features rtt", " --features planes"] {
             let line = format!("cargo clippy -p {package} --target {target}{features} -- -D warnings");
             steps.push(Step::new(format!("lints of {package}{features}"), Task::new(&line)).needing(tools));
         }
@@ -81,6 +81,9 @@ pub(crate) fn steps(long: bool) -> Vec<Step> {
             "chips, and the boards' firmware for probe-rs",
             Task::new("cargo test -p chip-fit --profile checked"),
         ),
+        Step::new("the viewer, without a window", Task::new("cargo test -p view --profile checked --lib --test chip")),
+        Step::new("the viewer's window", Task::new("cargo test -p view --profile checked --test window"))
+            .needing(&[XVFB]),
         Step::new("all of tests, optimised and overflow-checked", test("cargo test -p tests --profile checked")),
         Step::new("goldens, release", Task::new("cargo test -p tests --release --test goldens")),
     ]);

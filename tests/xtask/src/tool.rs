@@ -106,6 +106,18 @@ pub(crate) const CHROMIUM: Tool = Tool {
     },
 };
 
+/// The display that the window of `intray view` is tested on.
+pub(crate) const XVFB: Tool = Tool {
+    name: "Xvfb",
+    hint: "apt-get install xvfb",
+    // Even help ends as a failure: what counts is that it starts.
+    is_present: || std::process::Command::new("Xvfb").arg("-help").output().is_ok(),
+    install: || {
+        apt("xvfb");
+        Ok(())
+    },
+};
+
 /// What libFuzzer's instrumentation needs. Never installed unasked: it is a second compiler.
 pub(crate) const NIGHTLY: Tool = Tool {
     name: "nightly Rust",

@@ -4,11 +4,11 @@ use planes_rt::scene::Outline;
 use planes_rt::widths::Widths;
 
 use super::*;
-use crate::pixel_planes::program::{Shape, program};
+use crate::pixel_planes::program::{Operation, Shape, program};
 
-fn step(name: &'static str, reads: &[Value], writes: &[Value], scratch: u32) -> Step {
+fn step(operation: Operation, reads: &[Value], writes: &[Value], scratch: u32) -> Step {
     let sized = |values: &[Value]| values.iter().map(|&value| (value, 10)).collect();
-    Step { name, reads: sized(reads), writes: sized(writes), scratch, bit_operations: 100 }
+    Step { operation, sphere: 0, reads: sized(reads), writes: sized(writes), scratch, bit_operations: 100 }
 }
 
 fn store(local_bits: u32) -> Store {
@@ -18,10 +18,10 @@ fn store(local_bits: u32) -> Store {
 /// One value that is not used while another fills the memory.
 fn to_and_fro() -> Vec<Step> {
     vec![
-        step("make", &[], &[Value::Origin], 0),
-        step("fill", &[], &[Value::Root], 15),
-        step("empty", &[Value::Root], &[], 0),
-        step("use", &[Value::Origin], &[], 0),
+        step(Operation::CameraRay, &[], &[Value::Origin], 0),
+        step(Operation::Root, &[], &[Value::Root], 15),
+        step(Operation::Numerator, &[Value::Root], &[], 0),
+        step(Operation::Point, &[Value::Origin], &[], 0),
     ]
 }
 
@@ -29,12 +29,15 @@ fn to_and_fro() -> Vec<Step> {
 fn what_has_room_stays_and_what_has_none_goes_and_comes_back() {
     let roomy = Plan::new(&to_and_fro(), &store(35), 1).unwrap();
     assert_eq!((roomy.blocks, roomy.waiting, roomy.backing_bits), ([0, 0], 0, 0));
-    assert_eq!(roomy.fullest().map(|moment| (moment.step, moment.bits)), Some(("fill", 35)));
+    assert_eq!(roomy.fullest().map(|moment| (moment.step, moment.bits)), Some(("root", 35)));
     let tight = Plan::new(&to_and_fro(), &store(34), 1).unwrap();
     assert_eq!(tight.swapped, BTreeMap::from([(Value::Origin, [1, 1])]));
     // Outward it waits for the step that made it; inward there is room while the memory is emptied.
     assert_eq!((tight.blocks, tight.waiting, tight.backing_bits), ([1, 1], 60, 32));
-    assert_eq!(tight.moments[1].held, [Value::Root]);
+    assert!(tight.moments[1].held().eq([Value::Root]));
+    let transfer = |is_outward| Transfer { value: Value::Origin, is_outward, places: (0..10).collect(), home: 0 };
+    let transfers: Vec<&[Transfer]> = tight.moments.iter().map(|moment| moment.transfers.as_slice()).collect();
+    assert_eq!(transfers, [&[][..], &[transfer(true)], &[], &[transfer(false)]]);
     let slow = Store { block_cycles: 130, ..store(34) };
     assert_eq!(Plan::new(&to_and_fro(), &slow, 1).unwrap().waiting, 130 + 30);
 }
@@ -46,7 +49,7 @@ fn a_copy_in_the_store_is_not_written_again() {
     let plan = Plan::new(&steps, &store(34), 1).unwrap();
     assert_eq!(plan.swapped, BTreeMap::from([(Value::Origin, [1, 2])]));
     // Made anew in between, it is.
-    steps.insert(4, step("change", &[Value::Origin], &[Value::Origin], 0));
+    steps.insert(4, step(Operation::Reflect, &[Value::Origin], &[Value::Origin], 0));
     let plan = Plan::new(&steps, &store(34), 1).unwrap();
     assert_eq!(plan.swapped, BTreeMap::from([(Value::Origin, [2, 2])]));
 }
@@ -54,7 +57,7 @@ fn a_copy_in_the_store_is_not_written_again() {
 #[test]
 fn what_does_not_fit_is_refused_with_its_step() {
     let error = Plan::new(&to_and_fro(), &store(24), 1).unwrap_err();
-    assert_eq!(error, PlanError::Step { step: "fill", needed: 25, local: 24 });
+    assert_eq!(error, PlanError::Step { step: "root", needed: 25, local: 24 });
     let small = Store { backing_bits: 31, ..store(34) };
     assert_eq!(Plan::new(&to_and_fro(), &small, 1), Err(PlanError::Backing { needed: 32, backing: 31 }));
 }
@@ -71,12 +74,27 @@ fn the_text_s_algorithm_fits_208_bits_with_the_ray_swapped_out() {
             let at_the_root = plan.moments.iter().filter(|moment| moment.step == "root");
             // There is room for half of the ray at most.
             for moment in at_the_root {
-                assert!(!(moment.held.contains(&Value::Origin) && moment.held.contains(&Value::Direction)));
+                assert!(!(moment.places.contains_key(&Value::Origin) && moment.places.contains_key(&Value::Direction)));
             }
             // The remark on the next machine: 256 bytes a pixel. Nothing has to go.
             let roomy = Store { local_bits: 2048, ..Store::default() };
             assert_eq!(Plan::new(&program(&shape), &roomy, 1).unwrap().swapped, BTreeMap::new());
         }
+    }
+}
+
+#[test]
+fn no_two_values_share_a_bit_and_all_have_theirs() {
+    let shape = Shape { widths: Widths::PIXEL_PLANES, spheres: 5, generations: 2, outline: Outline::Nearest };
+    let plan = Plan::new(&program(&shape), &Store::default(), 1).unwrap();
+    for moment in &plan.moments {
+        let mut all: Vec<usize> = moment.places.values().chain([&moment.scratch]).flatten().copied().collect();
+        assert_eq!(all.len(), moment.bits as usize);
+        all.sort_unstable();
+        all.dedup();
+        assert_eq!(all.len(), moment.bits as usize, "{}", moment.step);
+        assert!(all.last().is_none_or(|&last| last < 208));
+        assert!(moment.places.iter().all(|(&value, places)| places.len() == shape.bits(value) as usize));
     }
 }
 

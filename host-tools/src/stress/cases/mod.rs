@@ -1,5 +1,6 @@
 //! The cases.
 
+mod planes;
 mod rays;
 mod scale;
 mod shading;
@@ -19,6 +20,12 @@ pub const DEEPEST: &str = "deepest-tree";
 #[must_use]
 pub fn all() -> Vec<Case> {
     [scale::cases(), triangles::cases(), rays::cases(), shading::cases(), structure::cases()].concat()
+}
+
+/// Cases of spheres alone, for the tracer of 1994.
+#[must_use]
+pub fn of_spheres() -> Vec<Case> {
+    planes::cases()
 }
 
 /// Everyday objects on a table, everything within two orders of magnitude: 4 across.

@@ -1,0 +1,20 @@
+//! Draws spheres in a board's flash as the tracer of 1994 does. On the host there is nothing to do but to say so.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(target_os = "none")]
+mod chip;
+
+#[cfg(target_os = "none")]
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    // SAFETY: the linker script is made from the board; nothing but the stack lies there.
+    unsafe { firmware_rt::stack::paint(chip::BOARD.stack) };
+    chip::start();
+    firmware_rt::end::end(firmware_rt::planes::run(&chip::BOARD), || ())
+}
+
+#[cfg(not(target_os = "none"))]
+fn main() {
+    eprintln!("this is firmware: intray emulate SCENE --kernel planes12 --board microbit -o chip.png");
+    std::process::exit(2);
+}

@@ -1,0 +1,5 @@
+//! `intray-view`, which `intray view` runs.
+
+fn main() -> std::process::ExitCode {
+    view::cli::run()
+}
