@@ -178,7 +178,7 @@ pub fn render_tile<'w, P: Profile>(
     if !P::NEEDS.has(Need::Supersampling) {
         // What pixels are written to is room for depths before.
         let ray = |[x, y]: [u16; 2]| scene.primary(&scene.camera, x, y);
-        scene.hits().closest_tile(scene.shared_origin(), ray, tile, hits, room, stack, stats);
+        scene.hits().closest_tile(scene.drawn_from(), ray, tile, hits, room, stack, stats);
     }
     let pixels = room.get_mut(..count * format.bytes()).unwrap_or_default();
     if P::NEEDS.has(Need::Supersampling) {

@@ -185,6 +185,15 @@ impl<P: Profile> Scene<'_, P> {
         (!P::NEEDS.has(Need::Orthographic) || !self.frame.needs.has(Need::Orthographic)).then_some(&self.camera)
     }
 
+    /// The camera, where its rays had better walk the tree together: a tile draws every triangle in it, so not where there are
+    /// fewer pixels than triangles.
+    #[inline]
+    #[must_use]
+    pub(crate) fn drawn_from(&self) -> Option<&Camera<<P::Kernel as Kernel>::Word>> {
+        let [width, height] = self.frame.size.map(u32::from);
+        self.shared_origin().filter(|_| width * height >= self.bvh.triangles.len())
+    }
+
     /// The ray of a camera, the scene's or one that looks [through](Camera::through) other places, that goes through a pixel;
     /// `None` where the direction is zero.
     #[inline]
