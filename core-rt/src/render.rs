@@ -215,11 +215,11 @@ pub fn render_tile<'w, P: Profile>(
         let ray = |[x, y]: [u16; 2]| scene.primary(&scene.camera, x, y);
         // Taken off one by one: to know how many chunks there are takes a division.
         let mut left = &mut *pixels;
-        for (place, &hit) in places.zip(&*hits) {
+        for (&hit, place) in hits.iter().zip(places) {
             let seen = seen(scene, ray(place).as_ref(), hit, stack, branches, stats);
-            if let Some(pixel) = left.split_off_mut(..format.bytes()) {
-                format.put(seen, transfer, place, pixel);
-            }
+            let (pixel, rest) = core::mem::take(&mut left).split_at_mut_checked(format.bytes()).unwrap_or_default();
+            format.put(seen, transfer, place, pixel);
+            left = rest;
         }
     }
     Ok(pixels)
