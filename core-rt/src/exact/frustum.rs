@@ -104,6 +104,26 @@ pub struct Frustum<W: Width> {
     sides: [[Side; 2]; 2],
 }
 
+/// A vector with its component along an axis first.
+#[inline(always)]
+fn turned<T>([x, y, z]: Triple<T>, axis: usize) -> Triple<T> {
+    match axis {
+        0 => [x, y, z],
+        1 => [y, z, x],
+        _ => [z, x, y],
+    }
+}
+
+/// The inverse of [`turned`].
+#[inline(always)]
+fn turned_back<T>([u, v, w]: Triple<T>, axis: usize) -> Triple<T> {
+    match axis {
+        0 => [u, v, w],
+        1 => [w, u, v],
+        _ => [v, w, u],
+    }
+}
+
 impl<W: Width> Frustum<W> {
     /// The bits of a direction below a unit.
     const DROPPED_BITS: u32 = W::DIRECTION_BITS.saturating_sub(UNIT_BITS);
@@ -173,12 +193,7 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
         let middle = middle.map(i32::abs);
         let axis =
             if middle[0] >= middle[1] && middle[0] >= middle[2] { 0 } else { 1 + usize::from(middle[2] > middle[1]) };
-        // That axis first.
-        let turned = |[x, y, z]: Triple<i32>| match axis {
-            0 => [x, y, z],
-            1 => [y, z, x],
-            _ => [z, x, y],
-        };
+        let turned = |v| turned(v, axis);
         let is_down = turned(corners[0])[0] < 0;
         let (mut low, mut high, mut largest, mut smallest) = ([i32::MAX; 2], [i32::MIN; 2], 0, i32::MAX);
         for corner in corners {
@@ -338,25 +353,27 @@ impl<W: Width> Beam<Exact<W>> for Frustum<W> {
     /// With u the axis of depth and v another, all of the box is at p_v <= (b / a) |p_u|, b being its highest v and a the nearest u,
     /// or for b < 0 the farthest: then b |D_u| - a D_v is not negative where a ray meets it. Likewise below.
     fn around(&self, bounds: &Bounds) -> Option<[Linear; 4]> {
-        let from = |axis: usize, place: i32| W::Word::from_i32(place) - self.origin[axis];
-        let low = |axis: usize| (from(axis, bounds.low[axis]) >> Self::COARSE_BITS).low_i32();
-        let high = |axis: usize| -((-from(axis, bounds.high[axis])) >> Self::COARSE_BITS).low_i32();
-        let u = self.axis;
-        let (near, far) = if self.is_down { (-high(u), -low(u)) } else { (low(u), high(u)) };
+        let low = sub(bounds.low.map(W::Word::from_i32), self.origin).map(|c| (c >> Self::COARSE_BITS).low_i32());
+        let high = sub(self.origin, bounds.high.map(W::Word::from_i32)).map(|c| -(c >> Self::COARSE_BITS).low_i32());
+        let ([u_low, v_low, w_low], [u_high, v_high, w_high]) = (turned(low, self.axis), turned(high, self.axis));
+        let (near, far) = if self.is_down { (-u_high, -u_low) } else { (u_low, u_high) };
         if near <= 0 {
             return None;
         }
-        let line = |v: usize, slope: i32, depth: i32| {
-            let mut g = [0; 3];
-            (g[u], g[v]) = (if self.is_down { -slope } else { slope }, depth);
+        let line = |slope: i32, [v, w]: [i32; 2]| {
+            let g = turned_back([if self.is_down { -slope } else { slope }, v, w], self.axis);
             let g = g.map(|c| rounded(c, BOX_BITS.saturating_sub(self.vector_bits)));
             let line = self.linear(g);
             Linear { first: line.first + self.off(g) + (self.length >> 1) + LINEAR_ERROR, ..line }
         };
-        let above = |v: usize| line(v, high(v), -if high(v) < 0 { far } else { near });
-        let below = |v: usize| line(v, -low(v), if low(v) > 0 { far } else { near });
-        let [v, w] = [(u + 1) % 3, (u + 2) % 3];
-        Some([above(v), below(v), above(w), below(w)])
+        let above = |high: i32| -if high < 0 { far } else { near };
+        let below = |low: i32| if low > 0 { far } else { near };
+        Some([
+            line(v_high, [above(v_high), 0]),
+            line(-v_low, [below(v_low), 0]),
+            line(w_high, [0, above(w_high)]),
+            line(-w_low, [0, below(w_low)]),
+        ])
     }
 
     /// A vector is within 1/2 along each axis, or without error: its product with a direction is off by at most half the sum of
