@@ -3,11 +3,18 @@
 use std::process::{Command, Stdio};
 
 /// Each with what it shows.
-const BENCHES: [(&str, &str); 1] = [(
-    "kernels",
-    "Whole pictures by one thread and scalar code: the time of each kernel over that of `f32` in the same round, the median \
-     of the rounds and their spread.",
-)];
+const BENCHES: [(&str, &str); 2] = [
+    (
+        "host",
+        "Camera rays by one thread: `exact29` by vector units over scalar `f32`, and over `f32` in the same layout; and all cores \
+         over a loop that touches no memory.",
+    ),
+    (
+        "kernels",
+        "Whole pictures by one thread and scalar code: the time of each kernel over that of `f32` in the same round, the median \
+         of the rounds and their spread.",
+    ),
+];
 
 /// What the benches print, as parts of the document.
 ///
