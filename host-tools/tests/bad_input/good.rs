@@ -33,8 +33,18 @@ fn render() {
     for (kernel, scene) in [("exact29", "scene.toml"), ("exact14", "scene.blob")] {
         folder.succeeds("prep scene.toml --kernel exact14 -o scene.blob", "");
         let found = object(&folder, &format!("render {scene} --threads 2 -o out.png --json"));
-        let mut expected =
-            ["kernel", "width", "height", "image_crc32", "rays", "box_tests", "triangle_tests", "threads", "seconds"];
+        let mut expected = [
+            "kernel",
+            "width",
+            "height",
+            "image_crc32",
+            "rays",
+            "box_tests",
+            "triangle_tests",
+            "threads",
+            "seconds",
+            "simd",
+        ];
         expected.sort_unstable();
         assert_eq!(fields(&found), expected);
         assert_eq!(found["kernel"], kernel);
