@@ -75,7 +75,7 @@ impl Chips {
         let mut text = String::from(
             "## Chips\n\nInstructions and cycles a pixel, and how many times fewer than soft float takes for the same rays of the \
              same scene (`f32`, by the compiler's own library, in the same firmware). Where camera rays go by tiles, those of \
-             `exact14` alone walk together. No faster library of soft float is to be had as a crate: `softfloat` and \
+             the exact kernels walk together. No faster library of soft float is to be had as a crate: `softfloat` and \
              `const_soft_float` are the compiler's own routines for use in constants, `simple-soft-float` and `minifloat` are \
              made to be read, and `softfloat-sys` is a C library for hosts.\n\n",
         );

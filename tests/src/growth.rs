@@ -10,7 +10,6 @@ use core_rt::scene::{MAX_DEPTH, Scene};
 use core_rt::stats::Stats;
 use glam::DVec3;
 use host_tools::model::{Camera, Light, LightKind, Model, Projection, Triangle};
-use host_tools::prepare::Blob;
 
 /// Parts of an edge of the octahedron from which meshes are blown up: the number of triangles about doubles, from 128 to
 /// 1,002,528.
@@ -63,13 +62,9 @@ impl Line {
     }
 }
 
-/// Finds the nearest hits of all camera rays of a scene for `exact29`, one by one.
-///
-/// # Panics
-/// If it is no such scene.
+/// Finds the nearest hits of all camera rays of a scene, one by one.
 #[inline(never)]
-pub fn find(blob: &Blob, stats: &mut impl Stats) {
-    let scene = Scene::<Full<Exact29>>::new_checked(blob.bytes()).expect("a blob just made");
+pub fn find(scene: &Scene<'_, Full<Exact29>>, stats: &mut impl Stats) {
     let mut stack = heapless::Vec::<Waiting<Exact29>, MAX_DEPTH>::new();
     let [width, height] = scene.frame.size;
     for place in (0..height).flat_map(|y| (0..width).map(move |x| [x, y])) {

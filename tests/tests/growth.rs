@@ -2,6 +2,7 @@
 //! box and triangle tests. `cargo xtask speed` shows more of it, up to a million triangles and by time.
 
 use core_rt::exact::Exact29;
+use core_rt::scene::Scene;
 use core_rt::stats::Counts;
 use firmware_rt::hits::Way;
 use host_tools::model::{Model, RenderSettings};
@@ -38,7 +39,7 @@ fn rays_on_the_host() {
         let model = model(side, [160, 120]);
         let mut counts = Counts::default();
         let blob = prepare::<Exact29>(&model, &Options::default()).expect("it fits").blob;
-        find(&blob, &mut counts);
+        find(&Scene::new_checked(blob.bytes()).expect("a blob just made"), &mut counts);
         (model.triangles.len(), (counts.box_tests + counts.triangle_tests) as f64)
     };
     let line = Line { name: "tests".into(), points: SIDES[..11].iter().map(tests).collect() };
