@@ -2,7 +2,7 @@
 //! same instruction, each with 208 bits of memory and a slower store behind it.
 //!
 //! Its program does not depend on what is seen: every sphere is looked at in every generation, and a mask says whose results
-//! count. So one [`program`] stands for all pixels, its [`memory`] can be planned beforehand, and its time is a sum.
+//! count. So one [`program`](mod@program) stands for all pixels, its [`memory`] can be planned beforehand, and its time is a sum.
 //!
 //! H. Fuchs et al., "Pixel-Planes 5: A Heterogeneous Multiprocessor Graphics System Using Processor-Enhanced Memories", 1989;
 //! L. Kesteloot, "Real Time Ray Tracing on Pixel-Planes 5", 1994. Neither the clock nor what an operation on a bit takes stands
