@@ -54,7 +54,7 @@ impl Display {
     /// Starts one under a number that is free; `None`, with a line that says so, where Xvfb is absent.
     pub(crate) fn start() -> Option<Self> {
         let started = Command::new("Xvfb")
-            .args("-displayfd 1 -screen 0 800x600x24 -nolisten tcp".split(' '))
+            .args("-displayfd 1 -noreset -screen 0 800x600x24 -nolisten tcp".split(' '))
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn();
