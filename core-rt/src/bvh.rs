@@ -145,7 +145,7 @@ impl<K: Kernel, T: Intersect<K>> Intersect<K> for &T {
 }
 
 type RayOf<P> = <<P as Profile>::Kernel as Kernel>::Ray;
-type DepthOf<P> = <<P as Profile>::Kernel as Kernel>::Depth;
+type SpanOf<P> = <<P as Profile>::Kernel as Kernel>::Span;
 type PathOf<P> = <<P as Profile>::Kernel as Kernel>::Path;
 type DistanceOf<P> = <<P as Profile>::Kernel as Kernel>::Distance;
 
@@ -192,14 +192,30 @@ impl<'a, P: Profile> Bvh<'a, P> {
         self.triangles.bounds().chain(spheres.iter().map(|sphere| P::Kernel::ball(sphere).bounds()))
     }
 
-    /// Whether a hit is nearer than another: the smaller (t, id).
+    /// Whether a hit is nearer than another of the same ray: the smaller (t, id).
     #[inline(always)]
-    fn nearer(&self, (index, depth): (u32, &DepthOf<P>), (other, than): (u32, &DepthOf<P>)) -> bool {
-        match P::Kernel::order(depth, than) {
+    fn nearer(&self, ray: &RayOf<P>, (index, span): (u32, &SpanOf<P>), (other, than): (u32, &SpanOf<P>)) -> bool {
+        match P::Kernel::compare(span, than) {
+            Some(Ordering::Less) => true,
+            Some(Ordering::Greater) => false,
+            Some(Ordering::Equal) => self.id(index) < self.id(other),
+            None => self.replaces(ray, index, other),
+        }
+    }
+
+    /// Whether a ray hits a primitive, nearer than another that it hits or that is [`NONE`]. By what they are hit at, without error.
+    #[inline(never)]
+    fn replaces(&self, ray: &RayOf<P>, index: u32, other: u32) -> bool {
+        let depth = |index: u32| match self.sphere(index) {
+            Some(sphere) => P::Kernel::intersect_sphere(ray, sphere, index == P::Kernel::skip(ray)),
+            None => self.triangles.of(index, |triangle| P::Kernel::intersect(ray, triangle)).flatten(),
+        };
+        let Some(new) = depth(index) else { return false };
+        depth(other).is_none_or(|old| match P::Kernel::order(&new, &old) {
             Ordering::Less => true,
             Ordering::Equal => self.id(index) < self.id(other),
             Ordering::Greater => false,
-        }
+        })
     }
 
     /// Tests every primitive that may be hit before the limit that `visit` returns, nearest boxes first, until it returns
@@ -211,7 +227,7 @@ impl<'a, P: Profile> Bvh<'a, P> {
         path: &PathOf<P>,
         stack: &mut Stack<P::Kernel>,
         stats: &mut impl Stats,
-        mut visit: impl FnMut(u32, Option<DepthOf<P>>) -> Option<DistanceOf<P>>,
+        mut visit: impl FnMut(u32, Option<SpanOf<P>>) -> Option<DistanceOf<P>>,
     ) {
         let mut limit = P::Kernel::reach(ray, path);
         let (skip, octant) = (P::Kernel::skip(ray), P::Kernel::octant(path));
@@ -226,7 +242,8 @@ impl<'a, P: Profile> Bvh<'a, P> {
                 for (index, sphere) in (first..).zip(run) {
                     stats.sphere();
                     // A ray that starts on a sphere may meet it again, from inside.
-                    match visit(index, P::Kernel::intersect_sphere(ray, sphere, index == skip)) {
+                    let depth = P::Kernel::intersect_sphere(ray, sphere, index == skip);
+                    match visit(index, depth.as_ref().map(P::Kernel::span)) {
                         Some(nearer) => limit = nearer,
                         None => return,
                     }
@@ -235,7 +252,7 @@ impl<'a, P: Profile> Bvh<'a, P> {
                 for index in (first..first + count).filter(|&index| index != skip) {
                     stats.triangle();
                     let Some(triangle) = self.triangles.assemble(index) else { return };
-                    match visit(index, P::Kernel::intersect(ray, &triangle)) {
+                    match visit(index, P::Kernel::meet(ray, &triangle)) {
                         Some(nearer) => limit = nearer,
                         None => return,
                     }
@@ -244,7 +261,7 @@ impl<'a, P: Profile> Bvh<'a, P> {
                 for (index, triangle) in (first..).zip(self.triangles.run(first, count)) {
                     if index != skip {
                         stats.triangle();
-                        match visit(index, P::Kernel::intersect(ray, triangle)) {
+                        match visit(index, P::Kernel::meet(ray, triangle)) {
                             Some(nearer) => limit = nearer,
                             None => return,
                         }
@@ -358,16 +375,16 @@ fn waiting<K: Kernel>(stack: &mut Stack<K>, limit: K::Distance) -> Option<u32> {
 impl<P: Profile> Intersect<P::Kernel> for Bvh<'_, P> {
     #[inline(never)]
     fn closest(&self, ray: &RayOf<P>, stack: &mut Stack<P::Kernel>, stats: &mut impl Stats) -> u32 {
-        let mut best: Option<DepthOf<P>> = None;
+        let mut best: Option<SpanOf<P>> = None;
         let mut hit = NONE;
         let path = path::<P>(ray);
         let mut limit = P::Kernel::reach(ray, &path);
-        self.walk(ray, &path, stack, stats, |index, depth| {
-            if let Some(depth) = depth
-                && best.as_ref().is_none_or(|best| self.nearer((index, &depth), (hit, best)))
+        self.walk(ray, &path, stack, stats, |index, span| {
+            if let Some(span) = span
+                && best.as_ref().is_none_or(|best| self.nearer(ray, (index, &span), (hit, best)))
             {
-                limit = P::Kernel::limit(&path, &depth);
-                best = Some(depth);
+                limit = P::Kernel::limit(&path, &span);
+                best = Some(span);
                 hit = index;
             }
             Some(limit)
@@ -385,8 +402,8 @@ impl<P: Profile> Intersect<P::Kernel> for Bvh<'_, P> {
         let mut hit = false;
         let path = path::<P>(ray);
         let limit = P::Kernel::reach(ray, &path);
-        self.walk(ray, &path, stack, stats, |index, depth| {
-            hit = depth.is_some() && blocks(index);
+        self.walk(ray, &path, stack, stats, |index, span| {
+            hit = span.is_some() && blocks(index);
             (!hit).then_some(limit)
         });
         hit

@@ -183,15 +183,4 @@ impl<P: Profile> Bvh<'_, P> {
             }
         }
     }
-
-    /// Whether a ray hits a primitive, nearer than another that it hits or that is [`NONE`].
-    #[inline(never)]
-    pub(super) fn replaces(&self, ray: &RayOf<P>, index: u32, other: u32) -> bool {
-        let depth = |index: u32| match self.sphere(index) {
-            Some(sphere) => P::Kernel::intersect_sphere(ray, sphere, false),
-            None => self.triangles.of(index, |triangle| P::Kernel::intersect(ray, triangle)).flatten(),
-        };
-        let Some(new) = depth(index) else { return false };
-        depth(other).is_none_or(|old| self.nearer((index, &new), (other, &old)))
-    }
 }

@@ -21,6 +21,7 @@ use core::cmp::Ordering;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 use super::ray::Ray;
+use super::span::{self, Span};
 use super::width::{Wide, Width};
 use crate::kernel::Vertices;
 use crate::num::{Triple, Word, cross, narrow_dot, sub};
@@ -49,7 +50,7 @@ impl<T: Copy> TriangleRecord<T> {
     }
 
     #[inline(always)]
-    fn v0_fields(&self) -> Triple<T> {
+    pub(super) fn v0_fields(&self) -> Triple<T> {
         [self.0[0], self.0[1], self.0[2]]
     }
 
@@ -70,7 +71,7 @@ impl<T: Copy> TriangleRecord<T> {
     }
 
     #[inline(always)]
-    fn n<W: Word>(&self) -> Triple<W>
+    pub(super) fn n<W: Word>(&self) -> Triple<W>
     where
         T: Into<W>,
     {
@@ -140,15 +141,26 @@ pub struct Depth<W: Width> {
 /// The hit, if there is one with 0 < t within the ray's reach.
 #[inline(always)]
 pub(super) fn intersect<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> Option<Depth<W>> {
-    let inside = if W::FILTERED { filtered(ray, triangle) } else { decided(ray, triangle) };
-    if inside { depth(ray, triangle) } else { None }
+    let is_met = if W::FILTERED { filtered(ray, triangle) != W::Word::ZERO } else { decided(ray, triangle) };
+    if is_met { depth(ray, triangle) } else { None }
 }
 
-/// Whether the line through the ray meets the triangle, by the filter where that decides.
+/// The hit that [`intersect`] finds, and between which t it is.
+#[inline(always)]
+pub(super) fn meet<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> Option<Span<W>> {
+    if !W::FILTERED {
+        return intersect(ray, triangle).map(|depth| Span::of(&depth));
+    }
+    let det = filtered(ray, triangle);
+    if det == W::Word::ZERO { None } else { span::within(ray, triangle, det) }
+}
+
+/// Whether the line through the ray meets the triangle, by the filter where that decides: if so -(D . n), or 1 where that is of
+/// no use, and 0 if not.
 ///
 /// Not inlined: most triangles are missed, and what a chip with few registers has for itself here is worth more than the call.
 #[inline(never)]
-fn filtered<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> bool {
+fn filtered<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> W::Word {
     let [x, y, z] = triangle.v0_fields().map(W::coordinate);
     let s = sub(ray.origin, [x, y, z]);
     let (shift, _) = W::split_meta(triangle.meta());
@@ -157,11 +169,10 @@ fn filtered<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> bool
     let edge_error = (W::Word::ONE + W::Word::ONE + W::Word::ONE) << shift;
     let u = narrow_dot(triangle.e2(), q);
     let v = -narrow_dot(triangle.e1(), q);
-    // At least its error above 0, or below it: the sign is certain.
-    let (u_positive, u_negative) = (u >= edge_error, u <= -edge_error);
-    let (v_positive, v_negative) = (v >= edge_error, v <= -edge_error);
-    if (u_positive && v_negative) || (u_negative && v_positive) {
-        return false;
+    // At least its error above 0, or below it: a sign is certain.
+    let (least, most) = (u.min(v), u.max(v));
+    if most >= edge_error && least <= -edge_error {
+        return W::Word::ZERO;
     }
 
     let down = match W::FILTER_SHIFT {
@@ -169,28 +180,28 @@ fn filtered<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> bool
         None => shift.min(W::NORMAL_BITS - shift),
         Some(taken) => taken - (2 * shift).saturating_sub(W::NORMAL_BITS),
     };
-    let det = -narrow_dot(ray.direction, triangle.n()) >> down;
+    let det = -narrow_dot(ray.direction, triangle.n());
     // Two: the shift may take a fraction off the error, and one off the determinant.
     let det_error =
         (((W::Word::ONE + W::Word::ONE + W::Word::ONE) << W::DIRECTION_BITS) >> down) + W::Word::ONE + W::Word::ONE;
-    let w = det.wrapping_sub(u).wrapping_sub(v);
+    let w = (det >> down).wrapping_sub(u).wrapping_sub(v);
     let w_error = det_error + edge_error + edge_error;
     if w >= w_error {
-        if u_negative || v_negative {
-            return false;
+        if least <= -edge_error {
+            return W::Word::ZERO;
         }
-        if u_positive && v_positive {
-            return true;
+        if least >= edge_error {
+            return det;
         }
     } else if w <= -w_error {
-        if u_positive || v_positive {
-            return false;
+        if most >= edge_error {
+            return W::Word::ZERO;
         }
-        if u_negative && v_negative {
-            return true;
+        if most <= -edge_error {
+            return det;
         }
     }
-    undecided(ray, triangle)
+    if undecided(ray, triangle) { W::Word::ONE } else { W::Word::ZERO }
 }
 
 /// [`decided`], where the filter does not decide. Rare, so kept out of line.
