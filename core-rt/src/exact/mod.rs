@@ -13,6 +13,7 @@ mod frustum;
 mod ray;
 mod resolve;
 mod slopes;
+#[cfg_attr(prefer_size, path = "span/exact.rs")]
 mod span;
 mod sphere;
 mod triangle;
@@ -223,23 +224,22 @@ impl<W: Width> Kernel for Exact<W> {
 
     #[inline(always)]
     fn meet(ray: &Ray<W>, triangle: &Self::Triangle) -> Option<Span<W>> {
-        triangle::meet(ray, triangle)
+        span::meet(ray, triangle)
     }
 
     #[inline(always)]
     fn span(depth: &Depth<W>) -> Span<W> {
-        Span::of(depth)
+        span::of(depth)
     }
 
     #[inline(always)]
     fn limit(slopes: &W::Slopes, span: &Span<W>) -> Distance<W> {
-        // Of a depth that may be low by the slack.
-        slopes.limit(span.most - W::SLACK)
+        slopes.limit(span::depth(span))
     }
 
     #[inline(always)]
     fn compare(a: &Span<W>, b: &Span<W>) -> Option<Ordering> {
-        a.order(b)
+        span::order(a, b)
     }
 
     #[inline(always)]

@@ -17,7 +17,7 @@
 use core::cmp::Ordering;
 
 use super::ray::Ray;
-use super::triangle::{Depth, TriangleRecord, depth};
+use super::triangle::{self, Depth, TriangleRecord};
 use super::width::Width;
 use crate::num::{Word, mantissa, sub};
 
@@ -30,24 +30,38 @@ pub struct Span<W: Width> {
     pub most: W::Word,
 }
 
-impl<W: Width> Span<W> {
-    /// That of a hit whose t is known.
-    #[inline(always)]
-    pub(super) fn of(depth: &Depth<W>) -> Self {
-        Self { least: depth.t - W::SLACK, most: depth.t + W::SLACK }
-    }
+/// That of a hit whose t is known.
+#[inline(always)]
+pub(super) fn of<W: Width>(depth: &Depth<W>) -> Span<W> {
+    Span { least: depth.t - W::SLACK, most: depth.t + W::SLACK }
+}
 
-    /// The order of two hits of a ray, where these tell.
-    #[inline(always)]
-    pub(super) fn order(&self, other: &Self) -> Option<Ordering> {
-        if self.most < other.least {
-            Some(Ordering::Less)
-        } else if other.most < self.least {
-            Some(Ordering::Greater)
-        } else {
-            None
-        }
+/// The order of two hits of a ray, where these tell.
+#[inline(always)]
+pub(super) fn order<W: Width>(a: &Span<W>, b: &Span<W>) -> Option<Ordering> {
+    if a.most < b.least {
+        Some(Ordering::Less)
+    } else if b.most < a.least {
+        Some(Ordering::Greater)
+    } else {
+        None
     }
+}
+
+/// A depth that is low by the slack at most.
+#[inline(always)]
+pub(super) fn depth<W: Width>(span: &Span<W>) -> W::Word {
+    span.most - W::SLACK
+}
+
+/// The hit with a triangle.
+#[inline(always)]
+pub(super) fn meet<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> Option<Span<W>> {
+    if !W::FILTERED {
+        return triangle::intersect(ray, triangle).map(|depth| of(&depth));
+    }
+    let det = triangle::filtered(ray, triangle);
+    if det == W::Word::ZERO { None } else { within(ray, triangle, det) }
 }
 
 /// By how many bits a determinant is longer than a direction's component, at least, where it is good for a quotient.
@@ -57,7 +71,7 @@ const SPARE_BITS: u32 = 7;
 /// filter's determinant, or too small for any use.
 // Out of line: few of the triangles that are tried are met.
 #[inline(never)]
-pub(super) fn within<W: Width>(
+fn within<W: Width>(
     ray: &Ray<W>,
     triangle: &TriangleRecord<W::Short>,
     det: W::Word,
@@ -103,5 +117,5 @@ pub(super) fn within<W: Width>(
 #[cold]
 #[inline(never)]
 fn exactly<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> Option<Span<W>> {
-    depth(ray, triangle).map(|depth| Span::of(&depth))
+    triangle::depth(ray, triangle).map(|depth| of(&depth))
 }

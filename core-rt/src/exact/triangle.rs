@@ -21,7 +21,6 @@ use core::cmp::Ordering;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 use super::ray::Ray;
-use super::span::{self, Span};
 use super::width::{Wide, Width};
 use crate::kernel::Vertices;
 use crate::num::{Triple, Word, cross, narrow_dot, sub};
@@ -145,22 +144,12 @@ pub(super) fn intersect<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Sho
     if is_met { depth(ray, triangle) } else { None }
 }
 
-/// The hit that [`intersect`] finds, and between which t it is.
-#[inline(always)]
-pub(super) fn meet<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> Option<Span<W>> {
-    if !W::FILTERED {
-        return intersect(ray, triangle).map(|depth| Span::of(&depth));
-    }
-    let det = filtered(ray, triangle);
-    if det == W::Word::ZERO { None } else { span::within(ray, triangle, det) }
-}
-
 /// Whether the line through the ray meets the triangle, by the filter where that decides: if so -(D . n), or 1 where that is of
 /// no use, and 0 if not.
 ///
 /// Not inlined: most triangles are missed, and what a chip with few registers has for itself here is worth more than the call.
 #[inline(never)]
-fn filtered<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> W::Word {
+pub(super) fn filtered<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> W::Word {
     let [x, y, z] = triangle.v0_fields().map(W::coordinate);
     let s = sub(ray.origin, [x, y, z]);
     let (shift, _) = W::split_meta(triangle.meta());
