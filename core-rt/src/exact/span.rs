@@ -67,8 +67,8 @@ pub(super) fn meet<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) 
 /// By how many bits a determinant is longer than a direction's component, at least, where it is good for a quotient.
 const SPARE_BITS: u32 = 7;
 
-/// The hit with a triangle that the line through the ray meets, if it has a t above 0 within the ray's reach. `det` is the
-/// filter's determinant, or too small for any use.
+/// The hit with a triangle that the line through the ray meets by this determinant, or of which the filter does not tell, if it
+/// has a t above 0 within the ray's reach.
 // Out of line: few of the triangles that are tried are met.
 #[inline(never)]
 fn within<W: Width>(
@@ -110,12 +110,12 @@ fn within<W: Width>(
             }
         }
     }
-    exactly(ray, triangle)
+    exactly(ray, triangle, det == W::Word::ONE)
 }
 
 /// By the exact t: rare.
 #[cold]
 #[inline(never)]
-fn exactly<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> Option<Span<W>> {
-    triangle::depth(ray, triangle).map(|depth| of(&depth))
+fn exactly<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>, is_undecided: bool) -> Option<Span<W>> {
+    triangle::exactly(ray, triangle, is_undecided).map(|depth| of(&depth))
 }

@@ -140,14 +140,26 @@ pub struct Depth<W: Width> {
 /// The hit, if there is one with 0 < t within the ray's reach.
 #[inline(always)]
 pub(super) fn intersect<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> Option<Depth<W>> {
-    let is_met = if W::FILTERED { filtered(ray, triangle) != W::Word::ZERO } else { decided(ray, triangle) };
-    if is_met { depth(ray, triangle) } else { None }
+    let det = if W::FILTERED { filtered(ray, triangle) } else { W::Word::ONE };
+    if det == W::Word::ZERO { None } else { exactly(ray, triangle, det == W::Word::ONE) }
 }
 
-/// Whether the line through the ray meets the triangle, by the filter where that decides: if so -(D . n), or 1 where that is of
-/// no use, and 0 if not.
+/// The hit with a triangle that the line through the ray meets, or may meet.
+#[cfg_attr(not(prefer_size), inline(always))]
+#[cfg_attr(prefer_size, inline(never))]
+pub(super) fn exactly<W: Width>(
+    ray: &Ray<W>,
+    triangle: &TriangleRecord<W::Short>,
+    is_undecided: bool,
+) -> Option<Depth<W>> {
+    if is_undecided && !decided(ray, triangle) { None } else { depth(ray, triangle) }
+}
+
+/// Whether the line through the ray meets the triangle: if so -(D . n), which is then at least 2 in magnitude, 0 if not, and 1
+/// where the filter does not decide.
 ///
 /// Not inlined: most triangles are missed, and what a chip with few registers has for itself here is worth more than the call.
+/// It calls nothing, so that it has nothing to keep.
 #[inline(never)]
 pub(super) fn filtered<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> W::Word {
     let [x, y, z] = triangle.v0_fields().map(W::coordinate);
@@ -190,14 +202,7 @@ pub(super) fn filtered<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Shor
             return det;
         }
     }
-    if undecided(ray, triangle) { W::Word::ONE } else { W::Word::ZERO }
-}
-
-/// [`decided`], where the filter does not decide. Rare, so kept out of line.
-#[cold]
-#[inline(never)]
-fn undecided<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> bool {
-    decided(ray, triangle)
+    W::Word::ONE
 }
 
 /// Whether the line through the ray meets the triangle, without error.
