@@ -258,7 +258,8 @@ impl<'a, P: Profile> Bvh<'a, P> {
                     }
                 }
             } else if P::NEEDS.has(Need::WholeTriangles) {
-                for (index, triangle) in (first..).zip(self.triangles.run(first, count)) {
+                let Some(run) = self.triangles.run(first, count) else { return };
+                for (index, triangle) in (first..).zip(run) {
                     if index != skip {
                         stats.triangle();
                         match visit(index, P::Kernel::meet(ray, triangle)) {
