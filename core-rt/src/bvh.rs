@@ -12,6 +12,9 @@
 mod drawing;
 mod rows;
 mod together;
+mod walk;
+
+pub use walk::{InPlace, Walk};
 
 use core::cmp::Ordering;
 use core::fmt::Debug;
@@ -97,51 +100,6 @@ pub trait Intersect<K: Kernel> {
         stack: &mut Stack<K>,
         stats: &mut impl Stats,
     );
-}
-
-/// How the rays of a profile find what they hit: in the tree as it stands in the blob, or in what was made of it beforehand.
-///
-/// What they find is the same.
-pub trait Walk<P: Profile>: Copy + Debug + Default + Send + Sync {
-    /// What finds it.
-    fn over<'w>(&'w self, bvh: &'w Bvh<'w, P>) -> impl Intersect<P::Kernel> + 'w;
-}
-
-/// In the tree as it stands.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct InPlace;
-
-impl<P: Profile> Walk<P> for InPlace {
-    #[inline(always)]
-    fn over<'w>(&'w self, bvh: &'w Bvh<'w, P>) -> impl Intersect<P::Kernel> + 'w {
-        bvh
-    }
-}
-
-impl<K: Kernel, T: Intersect<K>> Intersect<K> for &T {
-    #[inline(always)]
-    fn closest(&self, ray: &K::Ray, stack: &mut Stack<K>, stats: &mut impl Stats) -> u32 {
-        (**self).closest(ray, stack, stats)
-    }
-
-    #[inline(always)]
-    fn any(&self, ray: &K::Ray, stack: &mut Stack<K>, stats: &mut impl Stats, blocks: impl FnMut(u32) -> bool) -> bool {
-        (**self).any(ray, stack, stats, blocks)
-    }
-
-    #[inline(always)]
-    fn closest_tile(
-        &self,
-        camera: Option<&Camera<K::Word>>,
-        ray: impl Fn([u16; 2]) -> Option<K::Ray>,
-        tile: Tile,
-        hits: &mut [u32],
-        room: &mut [u8],
-        stack: &mut Stack<K>,
-        stats: &mut impl Stats,
-    ) {
-        (**self).closest_tile(camera, ray, tile, hits, room, stack, stats);
-    }
 }
 
 type RayOf<P> = <<P as Profile>::Kernel as Kernel>::Ray;
@@ -238,7 +196,9 @@ impl<'a, P: Profile> Bvh<'a, P> {
             if P::NEEDS.has(Need::Spheres)
                 && let Some(first_sphere) = first.checked_sub(self.triangles.len())
             {
-                let run = self.spheres.get(first_sphere as usize..(first_sphere + count) as usize).unwrap_or_default();
+                let Some(run) = self.spheres.get(first_sphere as usize..(first_sphere + count) as usize) else {
+                    return;
+                };
                 for (index, sphere) in (first..).zip(run) {
                     stats.sphere();
                     // A ray that starts on a sphere may meet it again, from inside.

@@ -55,10 +55,13 @@ impl<P: Profile> Bvh<'_, P> {
                 self.together(beam, &ray, part, Found::new(hits, stride, nearness, part), stack, stats);
                 continue;
             }
-            for (y, row) in (part.y..).zip(hits.chunks_mut(stride.max(1)).take(part.height.into())) {
-                for (x, hit) in (part.x..).zip(row.iter_mut().take(part.width.into())) {
+            let mut start = 0;
+            for y in part.y..part.y + part.height {
+                let row = hits.get_mut(start..start + usize::from(part.width)).unwrap_or_default();
+                for (x, hit) in (part.x..).zip(row) {
                     *hit = one([x, y], stack, stats);
                 }
+                start += stride;
             }
         }
     }

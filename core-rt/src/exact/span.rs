@@ -71,11 +71,7 @@ const SPARE_BITS: u32 = 7;
 /// has a t above 0 within the ray's reach.
 // Out of line: few of the triangles that are tried are met.
 #[inline(never)]
-fn within<W: Width>(
-    ray: &Ray<W>,
-    triangle: &TriangleRecord<W::Short>,
-    det: W::Word,
-) -> Option<Span<W>> {
+fn within<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>, det: W::Word) -> Option<Span<W>> {
     let bits = det.magnitude_bits();
     // 2^16 such units are the largest t, a power of two; of a grid too small for them nothing is told apart by them.
     let unit_bits = (W::T_MAX.magnitude_bits() - 1).checked_sub(16);
@@ -98,7 +94,10 @@ fn within<W: Width>(
             let t = (numerator * mantissa(divisor)) >> 15; // below 2^17
             // 13 (2^15 + 2^17 + 8) < 2^22; one for the shift, and 8 for the quotient.
             let reach = (1 << (W::GRID_BITS + q - W::DIRECTION_BITS)) + 8;
-            let error = ((13 * (reach + t)) >> (bits + 1 - W::DIRECTION_BITS)) + 9;
+            // The determinant is below 3 * 2^(NORMAL_BITS + DIRECTION_BITS).
+            let down = bits + 1 - W::DIRECTION_BITS;
+            let down = if W::NORMAL_BITS + 3 < u32::BITS { down } else { down.min(u32::BITS - 1) };
+            let error = ((13 * (reach + t)) >> down) + 9;
             let place = |t: u32| W::Word::from_i32(t.cast_signed()) << unit_bits;
             let span = Span { least: place(t) - place(error), most: place(t + error) };
             let limit = ray.reach_limit();
