@@ -103,6 +103,11 @@ pub trait Space: Copy + Debug + Default + Send + Sync + 'static {
     /// The direction of a ray that came `along` and passes a surface whose normal is towards it (Snell's law). `eta_q28` is
     /// the index before the surface by that behind it; `None` where all is reflected.
     fn refract(along: Self::Unit, normal: Self::Unit, eta_q28: u32) -> Option<Self::Unit>;
+    /// The direction of two random numbers: uniform on the sphere, since that is uniform along any axis (Archimedes; M.-Z. Shao
+    /// & N. Badler, "Spherical Sampling by Archimedes' Theorem", 1996).
+    fn anywhere(numbers: [u32; 2]) -> Self::Unit;
+    /// A direction and another in its share, 65535 for 1, normalised; `None` where they cancel.
+    fn strewn(unit: Self::Unit, by: Self::Unit, share: u16) -> Option<Self::Unit>;
     /// The direction half way between two; `None` where they are opposite.
     fn halfway(a: Self::Unit, b: Self::Unit) -> Option<Self::Unit>;
     /// The cosine between two directions to a power in Q2, by the chord between them; 0 from a right angle on.

@@ -104,6 +104,8 @@ pub struct Material {
     pub checker: Option<Checker>,
     /// Whether light that it refracts casts a coloured shadow, and not a full one.
     pub tinted_shadow: bool,
+    /// How far mirrored rays are strewn about the mirrored direction, in [0, 1]: 0 is a sharp mirror image.
+    pub roughness: f64,
     /// What the albedo is multiplied by, where a triangle has texture coordinates.
     pub texture: Option<Arc<Texture>>,
 }
@@ -124,6 +126,7 @@ impl Default for Material {
             weights: None,
             checker: None,
             tinted_shadow: false,
+            roughness: 0.0,
             texture: None,
         }
     }
@@ -297,6 +300,8 @@ pub struct RenderSettings {
     pub size: [u32; 2],
     /// Camera rays a pixel, from 1.
     pub samples: u32,
+    /// Whether a camera ray is followed as one path that goes on at random, diffusely too, and not as Whitted's tree.
+    pub paths: bool,
     /// How often a ray is reflected or refracted at most.
     pub max_depth: u32,
     /// Light that reaches everything, linear RGB, not negative.
@@ -317,6 +322,7 @@ impl Default for RenderSettings {
         Self {
             size: [640, 480],
             samples: 1,
+            paths: false,
             max_depth: 10,
             ambient: DVec3::ZERO,
             shadows: true,

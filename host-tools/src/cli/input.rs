@@ -44,6 +44,10 @@ pub struct SceneArguments {
     )]
     pub(super) samples: Option<u32>,
 
+    /// Whether a camera ray is followed as one random path, diffusely too, instead of the scene's way
+    #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    pub(super) paths: Option<bool>,
+
     /// How often a ray may be mirrored or refracted, instead of the scene's number
     #[arg(
         long,

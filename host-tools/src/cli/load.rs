@@ -133,12 +133,13 @@ impl SceneArguments {
             || self.prefer.is_some()
             || self.grid_bits.is_some()
             || self.samples.is_some()
+            || self.paths.is_some()
             || self.format.is_some()
             || self.knobs.any()
         {
             return Err(Failure::input(
-                "--leaf, --prefer, --grid-bits, --samples, --format and the knobs of arithmetic are other kernels'; planes12 has \
-                 none of them",
+                "--leaf, --prefer, --grid-bits, --samples, --paths, --format and the knobs of arithmetic are other kernels'; \
+                 planes12 has none of them",
             ));
         }
         self.model()
@@ -169,6 +170,9 @@ impl SceneArguments {
         }
         if let Some(samples) = self.samples {
             model.render.samples = samples;
+        }
+        if let Some(paths) = self.paths {
+            model.render.paths = paths;
         }
         if let Some(depth) = self.depth {
             model.render.max_depth = depth;
@@ -241,14 +245,15 @@ impl SceneArguments {
             || self.knobs.any()
             || self.size.is_some_and(|size| size != own)
             || self.samples.is_some()
+            || self.paths.is_some()
             || self.depth.is_some()
             || self.grid_bits.is_some()
             || self.prefer.is_some()
             || self.format.is_some()
         {
             return Err(Failure::input(format!(
-                "{path}: the blob is for {}x{} pixels, and its tree is built; --size, --samples, --depth, --format, \
-                 --leaf, --prefer, --grid-bits, --triangles, --texture-size, --texels and the knobs of its arithmetic need the scene \
+                "{path}: the blob is for {}x{} pixels, and its tree is built; --size, --samples, --paths, --depth, \
+                 --format, --leaf, --prefer, --grid-bits, --triangles, --texture-size, --texels and the knobs of its arithmetic need the scene \
                  that it was made from",
                 own[0], own[1]
             )));

@@ -61,6 +61,13 @@ impl Document {
             material.checker = Some(Checker { size: size.0, other });
         }
         material.tinted_shadow = change.tinted_shadow.unwrap_or(false);
+        if let Some(roughness) = &change.roughness {
+            material.roughness = roughness.get_ref().0;
+            if !(0.0..=1.0).contains(&material.roughness) {
+                let message = format!("roughness of {}; it must be from 0 to 1", material.roughness);
+                return Err(self.error(roughness.span(), message));
+            }
+        }
         Ok(material)
     }
 

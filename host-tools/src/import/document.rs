@@ -187,6 +187,9 @@ mod tests {
             ("model = 3", "1: invalid type: integer `3`, expected a string"),
             ("camera = 3", "1: invalid type: integer `3`, expected a table such as [camera]"),
             ("[light]\nkind = 'point'", "1: there may be several of these; double the brackets, such as [[light]]"),
+            ("[material.a]\nroughness = 'rough'", "2: invalid type: string \"rough\", expected a number"),
+            ("[material.a]\nroughness = nan", "2: NaN is not a finite number"),
+            ("[render]\npaths = 1", "2: invalid type: integer `1`, expected a boolean"),
             ("[render]\nsamples = true", "2: invalid type: boolean `true`, expected a number"),
         ];
         for (text, expected) in cases {

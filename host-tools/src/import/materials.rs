@@ -253,6 +253,8 @@ mod tests {
             ("[material.wall]\nchecker = { size = 0, other = [0, 0, 0] }", "3: checker size of 0; it must be above 0"),
             ("[material.wall]\nior = 0", "3: ior of 0; it must be from 0.1 to 10"),
             ("[material.wall]\nior = -1.5", "3: ior of -1.5; it must be from 0.1 to 10"),
+            ("[material.wall]\nroughness = 1.01", "3: roughness of 1.01; it must be from 0 to 1"),
+            ("[material.other]\nroughness = -0.1", "3: roughness of -0.1; it must be from 0 to 1"),
             ("[material.wall]\nexponent = 0", "3: exponent of 0; it must be from 1 to 10000"),
             ("[material.wall]\nexponent = 1e9", "3: exponent of 1000000000; it must be from 1 to 10000"),
             ("[material.wall]\nweights = [1, 0, -0.5, 0]", "3: a weight of -0.5; weights are from 0 to 1e30"),
@@ -279,6 +281,7 @@ mod tests {
         let weighted = wall("weights = [0, 10, 0.8, 0.2]\ntinted_shadow = true");
         assert_eq!((weighted.weights, weighted.specular), (Some([0.0, 10.0, 0.8, 0.2]), shine(DVec3::ONE)));
         assert!(weighted.tinted_shadow);
+        assert_eq!((wall("").roughness, wall("kind = 'metal'\nroughness = 0.25").roughness), (0.0, 0.25));
     }
 
     #[test]

@@ -112,6 +112,7 @@ pub(super) struct MaterialToml {
     pub weights: Option<Spanned<[Number; 4]>>,
     pub checker: Option<Spanned<CheckerToml>>,
     pub tinted_shadow: Option<bool>,
+    pub roughness: Option<Spanned<Number>>,
 }
 
 /// `material.NAME.kind`.
@@ -154,6 +155,7 @@ pub(super) struct BackgroundToml {
 pub(super) struct RenderToml {
     pub size: Option<Spanned<Vec<Number>>>,
     pub samples: Option<Spanned<Number>>,
+    pub paths: Option<bool>,
     pub max_depth: Option<Spanned<Number>>,
     pub ambient: Option<Spanned<Vector>>,
     pub shadows: Option<bool>,

@@ -104,6 +104,7 @@ impl Document {
             Some(samples) => self.count("samples", 1..=MOST_SAMPLES, samples)?,
             None => default.samples,
         };
+        let paths = render.paths.unwrap_or(default.paths);
         let max_depth = match &render.max_depth {
             Some(max_depth) => self.count("max_depth", 0..=GREATEST_DEPTH, max_depth)?,
             None => default.max_depth,
@@ -123,7 +124,7 @@ impl Document {
             FormatToml::Rgb565 => Format::Rgb565,
             FormatToml::Gray8 => Format::Gray8,
         };
-        Ok(RenderSettings { size, samples, max_depth, ambient, shadows, transfer, filter, format })
+        Ok(RenderSettings { size, samples, paths, max_depth, ambient, shadows, transfer, filter, format })
     }
 
     fn size(&self, size: &Spanned<Vec<Number>>) -> Result<[u32; 2], ImportError> {
@@ -217,11 +218,12 @@ mod tests {
 
     #[test]
     fn settings_reach_the_model() {
-        let lines = "[render]\nsamples = 4\nmax_depth = 0\nfilter = 'nearest'\n[background]\nsky = [[1, 2, 3], [4, 5, 6]]\n\
+        let lines = "[render]\nsamples = 4\npaths = true\nmax_depth = 0\nfilter = 'nearest'\n[background]\nsky = [[1, 2, 3], [4, 5, 6]]\n\
                      [[light]]\nposition = [0, 0, 0]\nfalloff = 'inverse-square'\nreach = 3\n[material.wall]";
         let imported = room(lines).unwrap();
         assert_eq!(warnings(&imported), Vec::<String>::new());
         let model = imported.model;
+        assert!(model.render.paths);
         assert_eq!((model.render.samples, model.render.max_depth, model.render.filter), (4, 0, Filter::Nearest));
         assert_eq!(model.lights[0].falloff, Falloff::InverseSquare { reach: 3.0 });
         let [bottom, top] = [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]].map(DVec3::from_array);
