@@ -297,10 +297,14 @@ impl<'a, P: Profile> Bvh<'a, P> {
             let enter = |child| enter(node, child);
             child = if let Some(a) = enter(0) {
                 if let Some(b) = enter(1) {
-                    let (near, far) = if b < a { (second, (first, a)) } else { (first, (second, b)) };
                     // A checked tree is no deeper than the stack.
-                    let _ = stack.push(far);
-                    near
+                    if b < a {
+                        let _ = stack.push((first, a));
+                        second
+                    } else {
+                        let _ = stack.push((second, b));
+                        first
+                    }
                 } else {
                     first
                 }
