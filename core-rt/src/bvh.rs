@@ -12,6 +12,9 @@
 mod drawing;
 mod rows;
 mod together;
+mod walk;
+
+pub use walk::{InPlace, Walk};
 
 use core::cmp::Ordering;
 use core::fmt::Debug;
@@ -99,53 +102,8 @@ pub trait Intersect<K: Kernel> {
     );
 }
 
-/// How the rays of a profile find what they hit: in the tree as it stands in the blob, or in what was made of it beforehand.
-///
-/// What they find is the same.
-pub trait Walk<P: Profile>: Copy + Debug + Default + Send + Sync {
-    /// What finds it.
-    fn over<'w>(&'w self, bvh: &'w Bvh<'w, P>) -> impl Intersect<P::Kernel> + 'w;
-}
-
-/// In the tree as it stands.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct InPlace;
-
-impl<P: Profile> Walk<P> for InPlace {
-    #[inline(always)]
-    fn over<'w>(&'w self, bvh: &'w Bvh<'w, P>) -> impl Intersect<P::Kernel> + 'w {
-        bvh
-    }
-}
-
-impl<K: Kernel, T: Intersect<K>> Intersect<K> for &T {
-    #[inline(always)]
-    fn closest(&self, ray: &K::Ray, stack: &mut Stack<K>, stats: &mut impl Stats) -> u32 {
-        (**self).closest(ray, stack, stats)
-    }
-
-    #[inline(always)]
-    fn any(&self, ray: &K::Ray, stack: &mut Stack<K>, stats: &mut impl Stats, blocks: impl FnMut(u32) -> bool) -> bool {
-        (**self).any(ray, stack, stats, blocks)
-    }
-
-    #[inline(always)]
-    fn closest_tile(
-        &self,
-        camera: Option<&Camera<K::Word>>,
-        ray: impl Fn([u16; 2]) -> Option<K::Ray>,
-        tile: Tile,
-        hits: &mut [u32],
-        room: &mut [u8],
-        stack: &mut Stack<K>,
-        stats: &mut impl Stats,
-    ) {
-        (**self).closest_tile(camera, ray, tile, hits, room, stack, stats);
-    }
-}
-
 type RayOf<P> = <<P as Profile>::Kernel as Kernel>::Ray;
-type DepthOf<P> = <<P as Profile>::Kernel as Kernel>::Depth;
+type SpanOf<P> = <<P as Profile>::Kernel as Kernel>::Span;
 type PathOf<P> = <<P as Profile>::Kernel as Kernel>::Path;
 type DistanceOf<P> = <<P as Profile>::Kernel as Kernel>::Distance;
 
@@ -192,14 +150,30 @@ impl<'a, P: Profile> Bvh<'a, P> {
         self.triangles.bounds().chain(spheres.iter().map(|sphere| P::Kernel::ball(sphere).bounds()))
     }
 
-    /// Whether a hit is nearer than another: the smaller (t, id).
+    /// Whether a hit is nearer than another of the same ray: the smaller (t, id).
     #[inline(always)]
-    fn nearer(&self, (index, depth): (u32, &DepthOf<P>), (other, than): (u32, &DepthOf<P>)) -> bool {
-        match P::Kernel::order(depth, than) {
+    fn nearer(&self, ray: &RayOf<P>, (index, span): (u32, &SpanOf<P>), (other, than): (u32, &SpanOf<P>)) -> bool {
+        match P::Kernel::compare(span, than) {
+            Some(Ordering::Less) => true,
+            Some(Ordering::Greater) => false,
+            Some(Ordering::Equal) => self.id(index) < self.id(other),
+            None => self.replaces(ray, index, other),
+        }
+    }
+
+    /// Whether a ray hits a primitive, nearer than another that it hits or that is [`NONE`]. By what they are hit at, without error.
+    #[inline(never)]
+    fn replaces(&self, ray: &RayOf<P>, index: u32, other: u32) -> bool {
+        let depth = |index: u32| match self.sphere(index) {
+            Some(sphere) => P::Kernel::intersect_sphere(ray, sphere, index == P::Kernel::skip(ray)),
+            None => self.triangles.of(index, |triangle| P::Kernel::intersect(ray, triangle)).flatten(),
+        };
+        let Some(new) = depth(index) else { return false };
+        depth(other).is_none_or(|old| match P::Kernel::order(&new, &old) {
             Ordering::Less => true,
             Ordering::Equal => self.id(index) < self.id(other),
             Ordering::Greater => false,
-        }
+        })
     }
 
     /// Tests every primitive that may be hit before the limit that `visit` returns, nearest boxes first, until it returns
@@ -211,7 +185,7 @@ impl<'a, P: Profile> Bvh<'a, P> {
         path: &PathOf<P>,
         stack: &mut Stack<P::Kernel>,
         stats: &mut impl Stats,
-        mut visit: impl FnMut(u32, Option<DepthOf<P>>) -> Option<DistanceOf<P>>,
+        mut visit: impl FnMut(u32, Option<SpanOf<P>>) -> Option<DistanceOf<P>>,
     ) {
         let mut limit = P::Kernel::reach(ray, path);
         let (skip, octant) = (P::Kernel::skip(ray), P::Kernel::octant(path));
@@ -222,11 +196,14 @@ impl<'a, P: Profile> Bvh<'a, P> {
             if P::NEEDS.has(Need::Spheres)
                 && let Some(first_sphere) = first.checked_sub(self.triangles.len())
             {
-                let run = self.spheres.get(first_sphere as usize..(first_sphere + count) as usize).unwrap_or_default();
+                let Some(run) = self.spheres.get(first_sphere as usize..(first_sphere + count) as usize) else {
+                    return;
+                };
                 for (index, sphere) in (first..).zip(run) {
                     stats.sphere();
                     // A ray that starts on a sphere may meet it again, from inside.
-                    match visit(index, P::Kernel::intersect_sphere(ray, sphere, index == skip)) {
+                    let depth = P::Kernel::intersect_sphere(ray, sphere, index == skip);
+                    match visit(index, depth.as_ref().map(P::Kernel::span)) {
                         Some(nearer) => limit = nearer,
                         None => return,
                     }
@@ -235,16 +212,17 @@ impl<'a, P: Profile> Bvh<'a, P> {
                 for index in (first..first + count).filter(|&index| index != skip) {
                     stats.triangle();
                     let Some(triangle) = self.triangles.assemble(index) else { return };
-                    match visit(index, P::Kernel::intersect(ray, &triangle)) {
+                    match visit(index, P::Kernel::meet(ray, &triangle)) {
                         Some(nearer) => limit = nearer,
                         None => return,
                     }
                 }
             } else if P::NEEDS.has(Need::WholeTriangles) {
-                for (index, triangle) in (first..).zip(self.triangles.run(first, count)) {
+                let Some(run) = self.triangles.run(first, count) else { return };
+                for (index, triangle) in (first..).zip(run) {
                     if index != skip {
                         stats.triangle();
-                        match visit(index, P::Kernel::intersect(ray, triangle)) {
+                        match visit(index, P::Kernel::meet(ray, triangle)) {
                             Some(nearer) => limit = nearer,
                             None => return,
                         }
@@ -358,16 +336,16 @@ fn waiting<K: Kernel>(stack: &mut Stack<K>, limit: K::Distance) -> Option<u32> {
 impl<P: Profile> Intersect<P::Kernel> for Bvh<'_, P> {
     #[inline(never)]
     fn closest(&self, ray: &RayOf<P>, stack: &mut Stack<P::Kernel>, stats: &mut impl Stats) -> u32 {
-        let mut best: Option<DepthOf<P>> = None;
+        let mut best: Option<SpanOf<P>> = None;
         let mut hit = NONE;
         let path = path::<P>(ray);
         let mut limit = P::Kernel::reach(ray, &path);
-        self.walk(ray, &path, stack, stats, |index, depth| {
-            if let Some(depth) = depth
-                && best.as_ref().is_none_or(|best| self.nearer((index, &depth), (hit, best)))
+        self.walk(ray, &path, stack, stats, |index, span| {
+            if let Some(span) = span
+                && best.as_ref().is_none_or(|best| self.nearer(ray, (index, &span), (hit, best)))
             {
-                limit = P::Kernel::limit(&path, &depth);
-                best = Some(depth);
+                limit = P::Kernel::limit(&path, &span);
+                best = Some(span);
                 hit = index;
             }
             Some(limit)
@@ -385,8 +363,8 @@ impl<P: Profile> Intersect<P::Kernel> for Bvh<'_, P> {
         let mut hit = false;
         let path = path::<P>(ray);
         let limit = P::Kernel::reach(ray, &path);
-        self.walk(ray, &path, stack, stats, |index, depth| {
-            hit = depth.is_some() && blocks(index);
+        self.walk(ray, &path, stack, stats, |index, span| {
+            hit = span.is_some() && blocks(index);
             (!hit).then_some(limit)
         });
         hit

@@ -147,6 +147,8 @@ pub trait Kernel: Copy + Debug + Default + Send + Sync + 'static {
     type Distance: Copy + Debug + PartialOrd + Send;
     /// Where a ray hits a triangle or a sphere, exactly (as exactly as the kernel knows).
     type Depth: Copy + Debug;
+    /// Between which depths a hit is: enough to tell most hits apart, for less.
+    type Span: Copy + Debug;
     /// The camera rays of a tile, where they walk the tree together; [`NoBeam`](crate::tile::NoBeam) where they do not.
     type Beam: Beam<Self>;
 
@@ -233,8 +235,14 @@ pub trait Kernel: Copy + Debug + Default + Send + Sync + 'static {
     /// Where a ray hits a sphere, if it does within its reach; a tangent does. `leaves` says that the ray starts on it, off it
     /// on one side: then it hits it at most once more, and only from inside.
     fn intersect_sphere(ray: &Self::Ray, sphere: &Self::Sphere, leaves: bool) -> Option<Self::Depth>;
-    /// A limit for [`Kernel::enter`] that leaves out nothing at or before `depth`, a hit of the ray.
-    fn limit(path: &Self::Path, depth: &Self::Depth) -> Self::Distance;
+    /// Between which depths the hit is that [`Kernel::intersect`] finds.
+    fn meet(ray: &Self::Ray, triangle: &Self::Triangle) -> Option<Self::Span>;
+    /// That of a hit whose depth is known.
+    fn span(depth: &Self::Depth) -> Self::Span;
+    /// A limit for [`Kernel::enter`] that leaves out nothing at or before a hit of the ray.
+    fn limit(path: &Self::Path, span: &Self::Span) -> Self::Distance;
+    /// The order of two hits of one ray, where it can be told by these.
+    fn compare(a: &Self::Span, b: &Self::Span) -> Option<Ordering>;
     /// The order of two hits of one ray.
     fn order(a: &Self::Depth, b: &Self::Depth) -> Ordering;
     /// Whether a box that is entered at `entry` may hold something not beyond `limit`.

@@ -71,11 +71,11 @@ impl<'a, P: Profile> Mesh<'a, P> {
         self.len() == 0
     }
 
-    /// The records from `first` on of triangles that have some; fewer where there are fewer.
+    /// The records from `first` on of triangles that have some; `None` where there are fewer.
     #[inline(always)]
     #[must_use]
-    pub fn run(&self, first: u32, count: u32) -> &'a [<P::Kernel as Kernel>::Triangle] {
-        self.records.get(first as usize..(first + count) as usize).unwrap_or_default()
+    pub fn run(&self, first: u32, count: u32) -> Option<&'a [<P::Kernel as Kernel>::Triangle]> {
+        self.records.get(first as usize..(first + count) as usize)
     }
 
     /// The record of a triangle that shares its vertices, its material left out; `None` where there is none.

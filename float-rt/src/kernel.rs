@@ -48,6 +48,7 @@ impl<F: Format> Kernel for Float<F> {
     type Path = Path<F>;
     type Distance = F;
     type Depth = F;
+    type Span = F;
     type Beam = NoBeam;
 
     fn settle(knobs: &Knobs, _triangles: impl Iterator<Item = Vertices>) -> Option<Arithmetic> {
@@ -162,6 +163,21 @@ impl<F: Format> Kernel for Float<F> {
     #[inline]
     fn intersect_sphere(ray: &Ray<F>, sphere: &F::Sphere, leaves: bool) -> Option<F> {
         sphere::intersect::<F>(ray, sphere, leaves)
+    }
+
+    #[inline(always)]
+    fn meet(ray: &Ray<F>, triangle: &F::Triangle) -> Option<F> {
+        triangle::intersect(ray, triangle)
+    }
+
+    #[inline(always)]
+    fn span(depth: &F) -> F {
+        *depth
+    }
+
+    #[inline(always)]
+    fn compare(a: &F, b: &F) -> Option<Ordering> {
+        Some(a.order(*b))
     }
 
     #[inline(always)]

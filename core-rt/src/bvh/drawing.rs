@@ -46,10 +46,12 @@ impl<'h> Found<'h> {
     /// Nothing yet.
     pub(super) fn new(hits: &'h mut [u32], stride: usize, nearness: &'h mut Nearnesses, tile: Tile) -> Self {
         nearness.fill(i16::MAX);
-        let rows = hits.chunks_mut(stride.max(1)).zip(nearness.as_chunks_mut::<{ SIDE as usize }>().0);
-        for (hits, nearness) in rows.take(tile.height.into()) {
-            hits.get_mut(..tile.width.into()).unwrap_or_default().fill(NONE);
+        // Counted: to know how many chunks there are takes a division.
+        let mut start = 0;
+        for nearness in nearness.as_chunks_mut::<{ SIDE as usize }>().0.iter_mut().take(tile.height.into()) {
+            hits.get_mut(start..start + usize::from(tile.width)).unwrap_or_default().fill(NONE);
             nearness.get_mut(..tile.width.into()).unwrap_or_default().fill(NOWHERE);
+            start += stride;
         }
         Self { hits, stride, open: 0, nearness, shift: None, band: 0 }
     }

@@ -55,10 +55,13 @@ impl<P: Profile> Bvh<'_, P> {
                 self.together(beam, &ray, part, Found::new(hits, stride, nearness, part), stack, stats);
                 continue;
             }
-            for (y, row) in (part.y..).zip(hits.chunks_mut(stride.max(1)).take(part.height.into())) {
-                for (x, hit) in (part.x..).zip(row.iter_mut().take(part.width.into())) {
+            let mut start = 0;
+            for y in part.y..part.y + part.height {
+                let row = hits.get_mut(start..start + usize::from(part.width)).unwrap_or_default();
+                for (x, hit) in (part.x..).zip(row) {
                     *hit = one([x, y], stack, stats);
                 }
+                start += stride;
             }
         }
     }
@@ -182,16 +185,5 @@ impl<P: Profile> Bvh<'_, P> {
                 }
             }
         }
-    }
-
-    /// Whether a ray hits a primitive, nearer than another that it hits or that is [`NONE`].
-    #[inline(never)]
-    pub(super) fn replaces(&self, ray: &RayOf<P>, index: u32, other: u32) -> bool {
-        let depth = |index: u32| match self.sphere(index) {
-            Some(sphere) => P::Kernel::intersect_sphere(ray, sphere, false),
-            None => self.triangles.of(index, |triangle| P::Kernel::intersect(ray, triangle)).flatten(),
-        };
-        let Some(new) = depth(index) else { return false };
-        depth(other).is_none_or(|old| self.nearer((index, &new), (other, &old)))
     }
 }

@@ -115,5 +115,5 @@ pub(crate) fn slab<T: Word>(limit: T, slack: T, crossed: impl Fn(usize) -> (T, T
     let (z_near, z_far) = crossed(2);
     // Not clamped to 0: where the ray starts inside, a negative entry is as good a lower bound.
     let (entry, exit) = (entry.max(z_near), exit.min(z_far) + slack);
-    if entry > limit || entry > exit || exit < T::ZERO { None } else { Some(entry) }
+    if entry > exit || entry > limit || exit < T::ZERO { None } else { Some(entry) }
 }

@@ -13,6 +13,8 @@ mod frustum;
 mod ray;
 mod resolve;
 mod slopes;
+#[cfg_attr(prefer_size, path = "span/exact.rs")]
+mod span;
 mod sphere;
 mod triangle;
 mod width;
@@ -26,6 +28,7 @@ pub use frustum::Frustum;
 pub use ray::Ray;
 pub(crate) use slopes::in_order;
 pub use slopes::{PerAxis, Slopes, Slopes14, Slopes29};
+pub use span::Span;
 pub(crate) use sphere::{Crossing, crossing};
 pub use triangle::{Depth, TriangleRecord};
 pub use width::{Distance, Reciprocal, Wide, Width};
@@ -87,6 +90,7 @@ impl<W: Width> Kernel for Exact<W> {
     type Path = W::Slopes;
     type Distance = Distance<W>;
     type Depth = Depth<W>;
+    type Span = Span<W>;
     type Beam = Frustum<W>;
 
     fn settle(knobs: &Knobs, _triangles: impl Iterator<Item = Vertices>) -> Option<Arithmetic> {
@@ -219,8 +223,23 @@ impl<W: Width> Kernel for Exact<W> {
     }
 
     #[inline(always)]
-    fn limit(slopes: &W::Slopes, depth: &Depth<W>) -> Distance<W> {
-        slopes.limit(depth.t)
+    fn meet(ray: &Ray<W>, triangle: &Self::Triangle) -> Option<Span<W>> {
+        span::meet(ray, triangle)
+    }
+
+    #[inline(always)]
+    fn span(depth: &Depth<W>) -> Span<W> {
+        span::of(depth)
+    }
+
+    #[inline(always)]
+    fn limit(slopes: &W::Slopes, span: &Span<W>) -> Distance<W> {
+        slopes.limit(span::depth(span))
+    }
+
+    #[inline(always)]
+    fn compare(a: &Span<W>, b: &Span<W>) -> Option<Ordering> {
+        span::order(a, b)
     }
 
     #[inline(always)]

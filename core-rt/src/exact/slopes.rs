@@ -107,8 +107,8 @@ struct Scaled<const DIRECTION_BITS: u32, const UNIT_BITS: u32, const DELTA_BITS:
     near: Triple<i32>,
     far: Triple<i32>,
     slack: i32,
-    /// What products are shifted by along each axis, all 0 where the ray has an octant; then S.
-    shifts: [u8; 4],
+    /// A byte each, the lowest first: what products are shifted by along each axis, all 0 where the ray has an octant; then S.
+    shifts: u32,
 }
 
 /// Where no component has more bits less than this than a direction may have, products are not shifted.
@@ -141,21 +141,21 @@ impl<const DIRECTION_BITS: u32, const UNIT_BITS: u32, const DELTA_BITS: u32>
             let far = last[axis].wrapping_mul(factor).wrapping_sub(own_slack);
             (factor, first[axis].wrapping_mul(factor), far)
         };
-        let shifts = if has_octant { [0, 0, 0, x.1] } else { [x.1, y.1, z.1, 0] };
+        let shifts = if has_octant { x.1 << 24 } else { z.1 << 16 | y.1 << 8 | x.1 };
         let [x, y, z] = [axis(0, x.0), axis(1, y.0), axis(2, z.0)];
         Self { factor: [x.0, y.0, z.0], near: [x.1, y.1, z.1], far: [x.2, y.2, z.2], slack, shifts }
     }
 
     /// Factors in Q(13 + S), each with S, for components of which none is small.
     #[inline(always)]
-    fn same_unit(magnitudes: Triple<u32>) -> [(u32, u8); 3] {
+    fn same_unit(magnitudes: Triple<u32>) -> [(u32, u32); 3] {
         // The components' lengths, less one: 8 bits tell, of which the first two are not both 0.
         let log2 = magnitudes.map(|d| byte_length(d >> (DIRECTION_BITS - 8)) + (DIRECTION_BITS - 9));
         let scale = (log2[0].min(log2[1]).min(log2[2]) + 3 - UNIT_BITS).min(SCALE_MAX);
         let factor = |axis: usize| {
             let (d, log2) = (magnitudes[axis], log2[axis]);
             let normal = if DIRECTION_BITS > 16 { d >> (log2 - 15) } else { d << (15 - log2) };
-            ((mantissa(normal) - 2) >> (log2 + 3 - UNIT_BITS - scale), scale as u8)
+            ((mantissa(normal) - 2) >> (log2 + 3 - UNIT_BITS - scale), scale)
         };
         [factor(0), factor(1), factor(2)]
     }
@@ -163,19 +163,31 @@ impl<const DIRECTION_BITS: u32, const UNIT_BITS: u32, const DELTA_BITS: u32>
     /// A factor of 16 bits, and by what products with it are shifted to be in Q13.
     #[inline(never)]
     #[cold]
-    fn own_unit(magnitude: u32) -> (u32, u8) {
+    fn own_unit(magnitude: u32) -> (u32, u32) {
         let r = reciprocal(magnitude);
         if magnitude != 0 && r.log2_d + 3 >= UNIT_BITS {
-            (r.mantissa - 2, (r.log2_d + 3 - UNIT_BITS) as u8)
+            (r.mantissa - 2, r.log2_d + 3 - UNIT_BITS)
         } else {
             // A difference of 1 is then 2^16 - 1 or more, which no t in Q13 exceeds by more than the slack.
             (0xffff, 0)
         }
     }
 
+    /// S, or 0 where the ray has no octant.
+    #[inline(always)]
+    fn scale(&self) -> u32 {
+        self.shifts >> 24
+    }
+
+    /// What products are shifted by along an axis.
+    #[inline(always)]
+    fn shift(&self, axis: usize) -> u32 {
+        self.shifts >> (8 * axis) & 31
+    }
+
     #[inline(always)]
     fn octant(&self) -> usize {
-        if self.shifts[3] == 0 { ANY_OCTANT } else { octant(self.factor) }
+        if self.scale() == 0 { ANY_OCTANT } else { octant(self.factor) }
     }
 
     /// |delta| is at most 2^15 and |factor| below 2^16, so their product is below 2^31: the difference of products that may
@@ -186,7 +198,7 @@ impl<const DIRECTION_BITS: u32, const UNIT_BITS: u32, const DELTA_BITS: u32>
         let (near, far) = (self.near[axis], self.far[axis]);
         match OCTANT {
             ANY_OCTANT => {
-                let shift = self.shifts[axis];
+                let shift = self.shift(axis);
                 in_order::<OCTANT, _>(axis, along(low, near) >> shift, along(high, far) >> shift)
             }
             _ if OCTANT >> axis & 1 == 0 => (along(low, near), along(high, far)),
@@ -202,7 +214,7 @@ impl<const DIRECTION_BITS: u32, const UNIT_BITS: u32, const DELTA_BITS: u32>
     /// From a depth in Q13.
     #[inline(always)]
     fn limit(&self, depth_q13: i32) -> i32 {
-        (depth_q13 << self.shifts[3]) + self.slack
+        (depth_q13 << self.scale()) + self.slack
     }
 }
 
@@ -295,10 +307,10 @@ mod tests {
                 let (d, f) = (i128::from(direction[axis]).abs(), i128::from(slopes.factor[axis]).abs());
                 assert!(f > 0 && f < 1 << 16 && (slopes.factor[axis] < 0) == (direction[axis] < 0), "{direction:?}");
                 if d == 0 {
-                    assert_eq!((f, slopes.shifts[axis]), (0xffff, 0));
+                    assert_eq!((f, slopes.shift(axis)), (0xffff, 0));
                     continue;
                 }
-                let shift = if has_octant { slopes.shifts[3] } else { slopes.shifts[axis] };
+                let shift = if has_octant { slopes.scale() } else { slopes.shift(axis) };
                 // T = delta / d with so many bits; it counts up to 2^16 in Q13.
                 let one = 1i128 << (13 + u32::from(shift) + UNIT_BITS);
                 assert!(f * d <= one, "{direction:?}: {axis} is high");

@@ -49,7 +49,7 @@ impl<T: Copy> TriangleRecord<T> {
     }
 
     #[inline(always)]
-    fn v0_fields(&self) -> Triple<T> {
+    pub(super) fn v0_fields(&self) -> Triple<T> {
         [self.0[0], self.0[1], self.0[2]]
     }
 
@@ -70,7 +70,7 @@ impl<T: Copy> TriangleRecord<T> {
     }
 
     #[inline(always)]
-    fn n<W: Word>(&self) -> Triple<W>
+    pub(super) fn n<W: Word>(&self) -> Triple<W>
     where
         T: Into<W>,
     {
@@ -140,15 +140,28 @@ pub struct Depth<W: Width> {
 /// The hit, if there is one with 0 < t within the ray's reach.
 #[inline(always)]
 pub(super) fn intersect<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> Option<Depth<W>> {
-    let inside = if W::FILTERED { filtered(ray, triangle) } else { decided(ray, triangle) };
-    if inside { depth(ray, triangle) } else { None }
+    let det = if W::FILTERED { filtered(ray, triangle) } else { W::Word::ONE };
+    if det == W::Word::ZERO { None } else { exactly(ray, triangle, det == W::Word::ONE) }
 }
 
-/// Whether the line through the ray meets the triangle, by the filter where that decides.
+/// The hit with a triangle that the line through the ray meets, or may meet.
+#[cfg_attr(not(prefer_size), inline(always))]
+#[cfg_attr(prefer_size, inline(never))]
+pub(super) fn exactly<W: Width>(
+    ray: &Ray<W>,
+    triangle: &TriangleRecord<W::Short>,
+    is_undecided: bool,
+) -> Option<Depth<W>> {
+    if is_undecided && !decided(ray, triangle) { None } else { depth(ray, triangle) }
+}
+
+/// Whether the line through the ray meets the triangle: if so -(D . n), which is then at least 2 in magnitude, 0 if not, and 1
+/// where the filter does not decide.
 ///
 /// Not inlined: most triangles are missed, and what a chip with few registers has for itself here is worth more than the call.
+/// It calls nothing, so that it has nothing to keep.
 #[inline(never)]
-fn filtered<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> bool {
+pub(super) fn filtered<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> W::Word {
     let [x, y, z] = triangle.v0_fields().map(W::coordinate);
     let s = sub(ray.origin, [x, y, z]);
     let (shift, _) = W::split_meta(triangle.meta());
@@ -157,11 +170,10 @@ fn filtered<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> bool
     let edge_error = (W::Word::ONE + W::Word::ONE + W::Word::ONE) << shift;
     let u = narrow_dot(triangle.e2(), q);
     let v = -narrow_dot(triangle.e1(), q);
-    // At least its error above 0, or below it: the sign is certain.
-    let (u_positive, u_negative) = (u >= edge_error, u <= -edge_error);
-    let (v_positive, v_negative) = (v >= edge_error, v <= -edge_error);
-    if (u_positive && v_negative) || (u_negative && v_positive) {
-        return false;
+    // At least its error above 0, or below it: a sign is certain.
+    let (least, most) = (u.min(v), u.max(v));
+    if most >= edge_error && least <= -edge_error {
+        return W::Word::ZERO;
     }
 
     let down = match W::FILTER_SHIFT {
@@ -169,35 +181,28 @@ fn filtered<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> bool
         None => shift.min(W::NORMAL_BITS - shift),
         Some(taken) => taken - (2 * shift).saturating_sub(W::NORMAL_BITS),
     };
-    let det = -narrow_dot(ray.direction, triangle.n()) >> down;
+    let det = -narrow_dot(ray.direction, triangle.n());
     // Two: the shift may take a fraction off the error, and one off the determinant.
     let det_error =
         (((W::Word::ONE + W::Word::ONE + W::Word::ONE) << W::DIRECTION_BITS) >> down) + W::Word::ONE + W::Word::ONE;
-    let w = det.wrapping_sub(u).wrapping_sub(v);
+    let w = (det >> down).wrapping_sub(u).wrapping_sub(v);
     let w_error = det_error + edge_error + edge_error;
     if w >= w_error {
-        if u_negative || v_negative {
-            return false;
+        if least <= -edge_error {
+            return W::Word::ZERO;
         }
-        if u_positive && v_positive {
-            return true;
+        if least >= edge_error {
+            return det;
         }
     } else if w <= -w_error {
-        if u_positive || v_positive {
-            return false;
+        if most >= edge_error {
+            return W::Word::ZERO;
         }
-        if u_negative && v_negative {
-            return true;
+        if most <= -edge_error {
+            return det;
         }
     }
-    undecided(ray, triangle)
-}
-
-/// [`decided`], where the filter does not decide. Rare, so kept out of line.
-#[cold]
-#[inline(never)]
-fn undecided<W: Width>(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> bool {
-    decided(ray, triangle)
+    W::Word::ONE
 }
 
 /// Whether the line through the ray meets the triangle, without error.

@@ -89,6 +89,7 @@ impl<V: Variant> Kernel for Hanika<V> {
     type Path = Ray<V::Slab>;
     type Distance = i32;
     type Depth = i32;
+    type Span = i32;
     type Beam = NoBeam;
 
     fn settle(knobs: &Knobs, triangles: impl Iterator<Item = Vertices>) -> Option<Arithmetic> {
@@ -211,8 +212,23 @@ impl<V: Variant> Kernel for Hanika<V> {
     }
 
     #[inline(always)]
+    fn meet(ray: &Self::Ray, triangle: &TriangleRecord) -> Option<i32> {
+        triangle::intersect(ray, triangle)
+    }
+
+    #[inline(always)]
+    fn span(depth: &i32) -> i32 {
+        *depth
+    }
+
+    #[inline(always)]
     fn limit(_: &Self::Path, depth: &i32) -> i32 {
         *depth
+    }
+
+    #[inline(always)]
+    fn compare(a: &i32, b: &i32) -> Option<Ordering> {
+        Some(a.cmp(b))
     }
 
     #[inline(always)]

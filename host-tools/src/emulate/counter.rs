@@ -39,6 +39,7 @@ enum By {
     Nothing,
     Part,
     Need(Needs),
+    Routine,
 }
 
 /// What was counted.
@@ -65,6 +66,9 @@ pub struct Counts {
 pub struct Named {
     /// What it is for.
     pub name: String,
+    /// How many.
+    #[serde(default)]
+    pub instructions: u64,
     /// How many, for primary, shadow, mirrored rays and rays through surfaces, if these were told apart.
     pub rays: Option<[u64; 4]>,
 }
@@ -103,6 +107,12 @@ impl Counter {
         Self { by: By::Part, ..self.clone() }
     }
 
+    /// The same, to count the instructions of each routine of a firmware, by the name that it was linked under.
+    #[must_use]
+    pub fn by_routine(&self) -> Self {
+        Self { by: By::Routine, ..self.clone() }
+    }
+
     /// The same, to count the instructions of the routines of each need.
     #[must_use]
     pub(super) fn by_need(&self, needs: Needs) -> Self {
@@ -119,6 +129,7 @@ impl Counter {
             By::Nothing => None,
             By::Part => Some(by_part(elf)?),
             By::Need(needs) => Some(costs::ranges(elf, needs, SHARED)?),
+            By::Routine => Some(elf.routines()?),
         };
         if let Some(list) = list {
             let parts = out.with_extension("parts");

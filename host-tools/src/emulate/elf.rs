@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use firmware_rt::board::{Board, Region};
 use object::elf::SHF_ALLOC;
-use object::read::elf::ElfFile32;
-use object::{Endianness, Object, ObjectSection, ObjectSymbol, SectionFlags, SectionKind};
+use object::read::elf::{ElfFile32, ElfSymbol32};
+use object::{Endianness, Object, ObjectSection, ObjectSymbol, SectionFlags, SectionKind, SymbolKind};
 
 use super::EmulateError;
 use super::parts::{self, Range};
@@ -93,6 +93,17 @@ impl Elf {
         let unfit = |reason: String| self.unfit(reason);
         let file = ElfFile32::<Endianness>::parse(self.bytes.as_slice()).map_err(|error| unfit(error.to_string()))?;
         parts::parts(&file).map_err(unfit)
+    }
+
+    /// Its routines, a line each: address, bytes, name.
+    pub(super) fn routines(&self) -> Result<String, EmulateError> {
+        let file = ElfFile32::<Endianness>::parse(self.bytes.as_slice()).map_err(|e| self.unfit(e.to_string()))?;
+        // The lowest bit of an address says that it is Thumb code.
+        let routine = |symbol: ElfSymbol32<'_, '_, Endianness>| {
+            let name = symbol.name().ok().filter(|_| symbol.kind() == SymbolKind::Text && symbol.size() > 0)?;
+            Some(format!("{:#x} {:#x} {name}\n", symbol.address() & !1, symbol.size()))
+        };
+        Ok(file.symbols().filter_map(routine).collect())
     }
 
     pub(super) fn unfit(&self, reason: String) -> EmulateError {

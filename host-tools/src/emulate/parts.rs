@@ -60,10 +60,11 @@ impl Part {
 }
 
 /// What files are for, by the end of their paths; all others serve whoever calls them.
-const DECIDED: [(&str, Part); 30] = [
+const DECIDED: [(&str, Part); 31] = [
     ("-rt/src/bvh.rs", Part::Traversal),
     ("/boxes.rs", Part::Traversal),
     ("/triangle.rs", Part::Intersection),
+    ("/span.rs", Part::Intersection),
     ("/sphere.rs", Part::Intersection),
     ("/resolve.rs", Part::Intersection),
     ("core-rt/src/shade.rs", Part::Shading),

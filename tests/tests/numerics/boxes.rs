@@ -18,8 +18,13 @@ where
         let bounds = Bounds::of(&corners.map(|v| v.map(|c| c as i32)));
         let node = Exact::<W>::node([bounds; 2], [0; 2]);
         let depth = Exact::<W>::intersect(ray, triangle).expect("a hit");
+        let met = Exact::<W>::meet(ray, triangle).expect("a hit");
         let path = Exact::<W>::path(ray);
-        for limit in [Exact::<W>::limit(&path, &depth), Exact::<W>::reach(ray, &path)] {
+        for limit in [&Exact::<W>::span(&depth), &met]
+            .map(|span| Exact::<W>::limit(&path, span))
+            .into_iter()
+            .chain([Exact::<W>::reach(ray, &path)])
+        {
             let [first, second] = enter::<Exact<W>>(&path, &node, limit);
             assert!(first.is_some() && first == second, "{ray:?} misses {bounds:?}");
             assert!(Exact::<W>::within(first.expect("entered"), limit));

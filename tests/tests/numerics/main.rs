@@ -7,6 +7,7 @@ mod hits;
 mod optics;
 mod paint;
 mod shading;
+mod spans;
 mod spheres;
 mod sums;
 

@@ -147,7 +147,7 @@ impl<W: ToyWidth> Tally<W> {
         let t = (t.0, t.1 * cast.scale);
         self.wrong_t += u64::from((depth.numerator, depth.denominator) != t);
         let path = Exact::<W>::path(ray);
-        let limit = Exact::<W>::limit(&path, &depth);
+        let limit = Exact::<W>::limit(&path, &Exact::<W>::span(&depth));
         let entered = enter::<W>(&path, node, limit).is_some_and(|entry| {
             // Not after the hit, and not given up where the limit is the hit itself.
             i64::from(entry) * t.1 <= t.0 << W::T_BITS && Exact::<W>::within(entry, limit)

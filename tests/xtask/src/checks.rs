@@ -31,7 +31,8 @@ pub(crate) fn steps(long: bool) -> Vec<Step> {
         Step::new(
             "documentation",
             Task::new(
-                "cargo doc --no-deps -p core-rt -p float-rt -p host-tools -p chip-fit -p planes-rt -p planes-simd -p view",
+                "cargo doc --no-deps -p core-rt -p float-rt -p host-tools -p chip-fit -p planes-rt -p planes-simd \
+                 -p exact-simd -p view",
             )
             .with("RUSTDOCFLAGS", "-D warnings"),
         ),
@@ -64,7 +65,8 @@ pub(crate) fn steps(long: bool) -> Vec<Step> {
     steps.extend([
         Step::new(
             "unit tests, debug",
-            test("cargo test -p core-rt -p firmware-rt -p float-rt -p host-tools -p planes-rt -p qemu-plugin -p xtask"),
+            test("cargo test -p core-rt -p firmware-rt -p float-rt -p host-tools -p planes-rt -p exact-simd -p qemu-plugin \
+                  -p xtask"),
         ),
         Step::new("goldens, debug", Task::new("cargo test -p tests --test goldens")),
         Step::new("ImageMagick's counts", Task::new("cargo test -p tests --profile checked --test imagemagick"))
