@@ -180,6 +180,9 @@ struct Share {
 impl Share {
     const WHOLE: Self = Self { part: WHITE, doublings: 0 };
 
+    /// Beyond them it saturates, as light does.
+    const MOST_DOUBLINGS: u32 = 15;
+
     /// The light that it lets through.
     fn of<C: Colour>(self, light: C) -> C {
         let light = light.reflected(&self.part);
@@ -215,6 +218,78 @@ impl Share {
             part = part.map(|c| c << 1);
             doublings -= 1;
         }
-        (part != [0; 3]).then_some((way, Self { part, doublings: doublings.min(15) }))
+        while doublings > Self::MOST_DOUBLINGS {
+            part = part.map(|c| c.saturating_mul(2));
+            doublings -= 1;
+        }
+        (part != [0; 3]).then_some((way, Self { part, doublings }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALBEDOS: [Albedo; 6] =
+        [[0; 3], WHITE, [1, 0, 0], [0x8000, 0x7fff, 3], [0, 0xffff, 0x1234], [0x4000, 0x4000, 0x4000]];
+
+    /// The share's channels as whole numbers of 65535ths.
+    fn whole(share: Share) -> [u64; 3] {
+        share.part.map(|c| u64::from(c) << share.doublings)
+    }
+
+    /// The mean over all choices, each as likely as it is, is the sum of the albedos, within what each is off.
+    #[test]
+    fn what_is_chosen_stands_for_all_that_is_not() {
+        for (d, m, t) in ALBEDOS
+            .iter()
+            .flat_map(|d| ALBEDOS.iter().map(move |m| (d, m)))
+            .zip(ALBEDOS.iter().cycle())
+            .map(|((d, m), t)| (d, m, t))
+        {
+            let albedos = [*d, *m, *t];
+            let strongest = albedos.map(|albedo| u64::from(*albedo.iter().max().unwrap_or(&0)));
+            let sum: u64 = strongest.iter().sum();
+            let mut mean = [0u64; 3];
+            let mut found = [false; 3];
+            for number in (0..1u32 << 12).map(|n| n << 20) {
+                let Some((way, share)) = Share::WHOLE.chosen(&albedos, number) else { continue };
+                let place = match way {
+                    Way::Diffuse => 0,
+                    Way::Mirrored => 1,
+                    Way::Through => 2,
+                };
+                assert!(strongest[place] > 0, "{albedos:?}: a way that is black");
+                if !core::mem::replace(&mut found[place], true) {
+                    let whole = whole(share);
+                    (0..3).for_each(|channel| mean[channel] += whole[channel] * strongest[place]);
+                }
+            }
+            for channel in 0..3 {
+                // Ways that are too seldom for so few numbers are left out of the sum.
+                let meant: u64 = (0..3).filter(|&i| found[i]).map(|i| u64::from(albedos[i][channel])).sum();
+                let mean = mean[channel].checked_div(sum).unwrap_or(0);
+                assert!(mean.abs_diff(meant) <= 8, "{albedos:?}: {mean} for {meant}");
+            }
+        }
+    }
+
+    #[test]
+    fn shares_grow_to_their_end_and_shrink_to_nothing() {
+        let mut share = Share::WHOLE;
+        for _ in 0..100 {
+            let (_, next) = share.chosen(&[WHITE; 3], u32::MAX).expect("it is white");
+            assert!(whole(next) >= whole(share) && next.doublings <= 15, "{next:?}");
+            share = next;
+        }
+        assert_eq!(share.doublings, 15);
+        let (_, white) = Share::WHOLE.chosen(&[WHITE, [0; 3], [0; 3]], u32::MAX).expect("it is white");
+        assert_eq!(white, Share::WHOLE, "white alone changes nothing");
+        let mut surfaces = 0;
+        while let Some((_, next)) = share.chosen(&[[0x4000; 3], [0; 3], [0; 3]], 0) {
+            (share, surfaces) = (next, surfaces + 1);
+        }
+        assert!((15..=18).contains(&surfaces), "{surfaces}");
+        assert_eq!(Share::WHOLE.chosen(&[[0; 3]; 3], 7), None);
     }
 }

@@ -86,6 +86,17 @@ difference times eight.
 
 ";
 
+/// What the document ends with.
+const PATHS: &str = "
+## paths
+
+By chance, 64 samples a pixel, at 160x128: light that went from wall to wall, so that shadows are coloured. The grain is the same on
+every machine; another tracer's would be another, so there is no difference to show.
+
+![paths by exact29](gallery/paths-exact29.png)
+![paths by exact14](gallery/paths-exact14.png)
+";
+
 /// A row of the table: scene and kernel, and the columns of both sizes; `None` where it was not measured at a size.
 type Row = (String, [Option<String>; 2]);
 
@@ -135,6 +146,7 @@ fn the_figures_hold_and_are_the_documents() {
                 let _ = writeln!(text, "![{name} by {kernel}, by the reference, and what they differ by]({file})");
             }
         }
+        text.push_str(PATHS);
         std::fs::write(docs.join("GALLERY.md"), text).expect("the document");
     }
     let text = String::from_utf8(files::read(&docs.join("GALLERY.md")).expect("the document")).expect("it is text");
@@ -144,7 +156,24 @@ fn the_figures_hold_and_are_the_documents() {
         assert!(line.starts_with(&small), "INTRAY_BLESS=1 renews it\n{line}\n{small}");
         assert!(large.is_none_or(|large| line == small.clone() + &large), "INTRAY_BLESS=1 renews it\n{line}");
     }
+    assert!(text.ends_with(PATHS), "INTRAY_BLESS=1 renews it");
     assert!(shortfalls.is_empty(), "{}", shortfalls.join("\n"));
+}
+
+#[test]
+fn what_chance_draws_is_shown() {
+    let model = scene("paths", SIZES[0]);
+    for kernel in ["exact29", "exact14"] {
+        let path = folder().join(format!("docs/gallery/paths-{kernel}.png"));
+        let found = picture(kernel, &model);
+        if std::env::var_os("INTRAY_BLESS").is_some() {
+            found.write_png(&path).expect("a picture of the document");
+        }
+        assert!(
+            found == Picture::read_png(&path).expect("a picture of the document"),
+            "INTRAY_BLESS=1 renews {kernel}'s"
+        );
+    }
 }
 
 /// A figure that cannot be wrong would show nothing: a mirror that is a little tilted, and glass a little denser.

@@ -131,6 +131,8 @@ fn broken_shading<K: Kernel>() {
                 |d| {
                     d.header.needs = d.header.needs.with(Need::Paths, true).with(Need::Ambient, true);
                     d.header.ambient.mantissa = [0, 1, 0];
+                    // Corners of pixels are in range where all are one point.
+                    (d.header.camera.right, d.header.camera.down) = ([0; 3], [0; 3]);
                 },
                 BlobError::Shading,
             ),

@@ -141,11 +141,11 @@ fn directions<S: Direction>(name: &str, about: S::Unit) {
         let off = (mean - expected) / (variance / total).sqrt();
         assert!(off.abs() < SIGMAS, "{name}, {what}: {off:.1} standard deviations");
     };
-    for i in 0..3 {
-        within("mean", sum[i] / total, 0.0, 1.0 / 3.0);
-        for j in 0..3 {
+    sum.iter().for_each(|sum| within("mean", sum / total, 0.0, 1.0 / 3.0));
+    for (i, row) in products.iter().enumerate() {
+        for (j, product) in row.iter().enumerate() {
             let (expected, variance) = if i == j { (1.0 / 3.0, 4.0 / 45.0) } else { (0.0, 1.0 / 15.0) };
-            within("products", products[i][j] / total, expected, variance);
+            within("products", product / total, expected, variance);
         }
     }
     let off = off_equal(&cells);
