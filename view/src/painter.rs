@@ -5,7 +5,6 @@ use std::time::Instant;
 
 use core_rt::render::Tile;
 use core_rt::stats::Counts;
-use host_tools::engine::ENGINES;
 use host_tools::model::{Camera, Format, Light, LightKind, Model};
 use host_tools::picture::Picture;
 use rayon::ThreadPool;
@@ -13,6 +12,7 @@ use rayon::prelude::*;
 
 use crate::canvas;
 use crate::desk::Desk;
+use crate::kernels::KERNELS;
 use crate::stock::Stock;
 
 /// Tiles a thread between two looks at whether the picture is still wanted.
@@ -25,7 +25,7 @@ pub struct View {
     pub camera: Camera,
     /// Width and height, pixels.
     pub size: [u32; 2],
-    /// The kernel's place among [`ENGINES`].
+    /// The kernel's place among [`KERNELS`].
     pub kernel: usize,
     /// How pixels lie in memory, and so what colours there are.
     pub format: Format,
@@ -121,7 +121,7 @@ pub fn work(scene: &Scene, desk: &Desk<Wish>, pool: &ThreadPool, tell: &(dyn Fn(
 fn draft(stock: &mut Stock, model: &Model, kernel: usize, pool: &ThreadPool) -> Result<(Picture, Took), String> {
     let begin = Instant::now();
     let [width, height] = model.render.size;
-    stock.soon(ENGINES[kernel], model, |stage| {
+    stock.soon(KERNELS[kernel], model, |stage| {
         let tiles = canvas::order([width as u16, height as u16]);
         let drawn: Vec<_> = pool.install(|| tiles.par_iter().map(|&tile| stage.tile(tile)).collect());
         let mut whole = canvas::Canvas::new([width, height]);
@@ -144,7 +144,7 @@ fn full(
     tell: &dyn Fn(Drawn),
 ) -> Result<(), String> {
     let begin = Instant::now();
-    stock.exact(ENGINES[kernel], model, |stage| {
+    stock.exact(KERNELS[kernel], model, |stage| {
         let tiles = canvas::order(model.render.size.map(|side| side as u16));
         let mut counts = Counts::default();
         for batch in tiles.chunks(BATCH * pool.current_num_threads()) {

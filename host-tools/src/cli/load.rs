@@ -105,7 +105,8 @@ impl SceneArguments {
     fn load_by(&self, engine: Option<&'static dyn Engine>) -> Result<(Scene, Option<Model>), Failure> {
         if self.is_planes() {
             return Err(Failure::input(
-                "planes12 is known to render, trace, emulate, report, stress and pixel-planes; choose another kernel",
+                "planes12, the tracer of 1994, draws spheres alone and has no blobs: render, trace, emulate, report, stress, \
+                 pixel-planes and view know it; choose another kernel, such as exact29, or exact14 for a chip",
             ));
         }
         if !self.is_model() {

@@ -107,7 +107,7 @@ fn kernels_are_switched_and_what_comes_late_is_not_seen() {
     viewer.act(Action::Kernel(3), 1.0);
     viewer.act(Action::Kernel(99), 1.0);
     let second = wish(viewer.tick(1.0));
-    assert_eq!((second.view.kernel, second.draft, viewer.kernel()), (3, None, ENGINES[3].name()));
+    assert_eq!((second.view.kernel, second.draft, viewer.kernel()), (3, None, KERNELS[3].name()));
     assert!(full(&mut viewer, first, 255, 1.5).is_empty());
     assert!(viewer.full().is_none());
     full(&mut viewer, second, 3, 2.0);
