@@ -37,7 +37,7 @@ pub struct Use {
     pub size: [u16; 2],
     /// Whether rays are parallel.
     pub parallel: bool,
-    /// Whether a pixel has several samples, at any place in it.
+    /// Whether samples are at any place in a pixel.
     pub sampled: bool,
 }
 

@@ -129,9 +129,12 @@ pub trait Colour: Copy + Default + core::fmt::Debug {
     fn encode_gray(self, transfer: Transfer) -> u8;
     /// The light that a picture shows: at most 1.
     fn clamped(self) -> Self;
-    /// Of the sum of so many samples, each [clamped](Colour::clamped), the mean. At least one, at most
-    /// [`MAX_SAMPLES`](crate::samples::MAX_SAMPLES).
+    /// Of the sum of so many samples, each [clamped](Colour::clamped), the mean. At least one.
     fn mean(self, samples: u16) -> Self;
+    /// What a picture shows of it, in Q16, rounded to nearest: whole numbers, whose sums do not depend on their order.
+    fn to_q16(self) -> [u32; 3];
+    /// From Q16, any.
+    fn from_q16(light: [u32; 3]) -> Self;
 }
 
 /// Linear RGB in Q16.16.
@@ -219,11 +222,22 @@ impl Colour for Rgb16 {
         Self(self.0.map(|light| light.min(U16F16::ONE)))
     }
 
-    /// Rounded to nearest, halves up. The sum is at most 2^26, in a format of 32 bits: it has not saturated.
+    /// Rounded to nearest, halves up. The sum of 2^16 - 1 samples is at most 2^32 - 2^16, and has not saturated; nor does the
+    /// half carry.
     #[inline]
     fn mean(self, samples: u16) -> Self {
         let samples = u32::from(samples.max(1));
         Self(self.0.map(|sum| U16F16::from_bits((sum.to_bits() + samples / 2) / samples)))
+    }
+
+    #[inline]
+    fn to_q16(self) -> [u32; 3] {
+        self.clamped().0.map(U16F16::to_bits)
+    }
+
+    #[inline]
+    fn from_q16(light: [u32; 3]) -> Self {
+        Self(light.map(U16F16::from_bits))
     }
 }
 

@@ -16,7 +16,8 @@
 //!
 //! # Tracing
 //! [`camera`] rays go through the [`bvh`] to the triangles of a [`mesh`], a [`tile`] at a time, hits are shaded, and
-//! [`render`] brings tiles to a sink. A [`profile`] says what is compiled in; [`stats`] count the work.
+//! [`render`] brings tiles to a sink. What goes on from surfaces is followed as a tree ([`whitted`]) or as one [`path`] a
+//! sample, by numbers of [`random`]. A [`profile`] says what is compiled in; [`stats`] count the work.
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -33,8 +34,11 @@ pub mod kernel;
 mod light;
 pub mod mesh;
 pub mod num;
+mod onward;
 pub mod paint;
+pub mod path;
 pub mod profile;
+pub mod random;
 pub mod record;
 pub mod render;
 pub mod samples;

@@ -85,11 +85,15 @@ pub enum Need {
     Ids = 1 << 33,
     /// Ids beside the materials of records.
     IdsInRecords = 1 << 34,
+    /// Rays that go on from surfaces one at a time, at random, from matt ones too.
+    Paths = 1 << 35,
+    /// Blurred mirror images.
+    Roughness = 1 << 36,
 }
 
 impl Need {
     /// All of them.
-    pub const ALL: [Self; 35] = [
+    pub const ALL: [Self; 37] = [
         Self::PointLight,
         Self::DirectionalLight,
         Self::Shadows,
@@ -125,6 +129,8 @@ impl Need {
         Self::Bounces,
         Self::Ids,
         Self::IdsInRecords,
+        Self::Paths,
+        Self::Roughness,
     ];
 
     /// Its bit in a header: 0 to 63.
@@ -172,6 +178,8 @@ impl Display for Need {
             Self::Bounces => "rays that go on",
             Self::Ids => "ids of their own",
             Self::IdsInRecords => "ids in records",
+            Self::Paths => "paths",
+            Self::Roughness => "rough mirrors",
         })
     }
 }

@@ -70,8 +70,8 @@ pub struct Lustre {
     pub flags: u16,
     /// Schlick's reflectance at a right angle; 65535 is 1.
     pub r0: u16,
-    /// Zero.
-    pub reserved: u16,
+    /// How far mirrored rays are strewn about the mirrored direction; 65535 is 1.
+    pub roughness: u16,
 }
 
 impl Lustre {

@@ -6,7 +6,9 @@
 use crate::bvh::{Intersect, Stack};
 use crate::colour::{Colour, Transfer};
 use crate::kernel::{Kernel, NONE};
+use crate::path;
 use crate::profile::{Need, Profile};
+use crate::random::Sample;
 use crate::samples::Places;
 use crate::scene::Scene;
 use crate::shade::{ColourOf, RayOf};
@@ -175,13 +177,23 @@ pub fn render_tile<'w, P: Profile>(
         return Err(RenderError::Tile { capacity, needed: count });
     };
     let places = tile.places();
-    if !P::NEEDS.has(Need::Supersampling) {
+    if !P::NEEDS.has(Need::Supersampling) && !scene.follows_paths() {
         // What pixels are written to is room for depths before.
         let ray = |[x, y]: [u16; 2]| scene.primary(&scene.camera, x, y);
         scene.hits().closest_tile(scene.drawn_from(), ray, tile, hits, room, stack, stats);
     }
     let pixels = room.get_mut(..count * format.bytes()).unwrap_or_default();
-    if P::NEEDS.has(Need::Supersampling) {
+    if scene.follows_paths() {
+        let samples = scene.frame.samples;
+        let mut left = &mut *pixels;
+        for place in places {
+            let mut sum = path::Sum::default();
+            path::add(scene, place, 0..samples, stack, &mut sum, stats);
+            if let Some(pixel) = left.split_off_mut(..format.bytes()) {
+                format.put(path::mean::<P>(sum, samples), transfer, place, pixel);
+            }
+        }
+    } else if P::NEEDS.has(Need::Supersampling) {
         // One sample goes the same way: it is in the middle, and the mean of itself.
         let samples = scene.frame.samples;
         // All samples of a pixel, then those of the next: as many rays at a time as there is room for hits, which are as
@@ -201,7 +213,9 @@ pub fn render_tile<'w, P: Profile>(
                 *hit = ray.as_ref().map_or(NONE, |ray| scene.hits().closest(ray, stack, stats));
             }
             for (&hit, ray) in hits.iter().zip(again) {
-                sum = sum.plus(seen(scene, ray.as_ref(), hit, stack, branches, stats).clamped());
+                let pixel = if P::NEEDS.has(Need::Roughness) { shown.clone().next() } else { None };
+                let sample = Sample { pixel: pixel.unwrap_or_default(), number: taken };
+                sum = sum.plus(seen(scene, ray.as_ref(), hit, sample, stack, branches, stats).clamped());
                 taken += 1;
                 if taken == samples {
                     if let Some((pixel, place)) = unwritten.split_off_mut(..format.bytes()).zip(shown.next()) {
@@ -216,7 +230,8 @@ pub fn render_tile<'w, P: Profile>(
         // Taken off one by one: to know how many chunks there are takes a division.
         let mut left = &mut *pixels;
         for (&hit, place) in hits.iter().zip(places) {
-            let seen = seen(scene, ray(place).as_ref(), hit, stack, branches, stats);
+            let sample = Sample { pixel: place, number: 0 };
+            let seen = seen(scene, ray(place).as_ref(), hit, sample, stack, branches, stats);
             let (pixel, rest) = core::mem::take(&mut left).split_at_mut_checked(format.bytes()).unwrap_or_default();
             format.put(seen, transfer, place, pixel);
             left = rest;
@@ -231,13 +246,14 @@ fn seen<P: Profile>(
     scene: &Scene<'_, P>,
     ray: Option<&RayOf<P>>,
     hit: u32,
+    sample: Sample,
     stack: &mut Stack<P::Kernel>,
     branches: &mut Branches<P::Kernel>,
     stats: &mut impl Stats,
 ) -> ColourOf<P> {
     stats.ray(RayKind::Primary);
     match ray {
-        Some(ray) => radiance(scene, ray, hit, stack, branches, stats),
+        Some(ray) => radiance(scene, ray, hit, sample, stack, branches, stats),
         None => Colour::constant(&scene.frame.background[0]),
     }
 }

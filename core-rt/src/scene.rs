@@ -166,6 +166,13 @@ impl<P: Profile> Scene<'_, P> {
         }
     }
 
+    /// Whether camera rays are followed as [paths](crate::path).
+    #[inline(always)]
+    #[must_use]
+    pub fn follows_paths(&self) -> bool {
+        P::NEEDS.has(Need::Paths) && self.frame.needs.has(Need::Paths)
+    }
+
     /// What finds what rays hit.
     #[inline(always)]
     pub fn hits(&self) -> impl Intersect<P::Kernel> + '_ {

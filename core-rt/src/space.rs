@@ -51,6 +51,12 @@ pub(crate) fn fresnel_q16(cosine_q16: u32, r0_q16: u32) -> u32 {
     r0_q16 + product((1 << 16) - r0_q16, fifth_q15)
 }
 
+/// A share of 65535ths in Q15, rounded down; 65535 is 1.
+#[inline]
+pub(crate) fn share_q15(share: u16) -> u32 {
+    (u32::from(share) + u32::from(share >> 15)) >> 1
+}
+
 /// Formats and operations for shading. Implemented by zero-sized types.
 pub trait Space: Copy + Debug + Default + Send + Sync + 'static {
     /// A point on a surface or a light, with a few bits below the grid.
@@ -103,6 +109,11 @@ pub trait Space: Copy + Debug + Default + Send + Sync + 'static {
     /// The direction of a ray that came `along` and passes a surface whose normal is towards it (Snell's law). `eta_q28` is
     /// the index before the surface by that behind it; `None` where all is reflected.
     fn refract(along: Self::Unit, normal: Self::Unit, eta_q28: u32) -> Option<Self::Unit>;
+    /// The direction of two random numbers: uniform on the sphere, since that is uniform along any axis (Archimedes; M.-Z. Shao
+    /// & N. Badler, "Spherical Sampling by Archimedes' Theorem", 1996).
+    fn anywhere(numbers: [u32; 2]) -> Self::Unit;
+    /// A direction and another in its share, 65535 for 1, normalised; `None` where they cancel.
+    fn strewn(unit: Self::Unit, by: Self::Unit, share: u16) -> Option<Self::Unit>;
     /// The direction half way between two; `None` where they are opposite.
     fn halfway(a: Self::Unit, b: Self::Unit) -> Option<Self::Unit>;
     /// The cosine between two directions to a power in Q2, by the chord between them; 0 from a right angle on.

@@ -8,13 +8,14 @@
 use heapless::VecView;
 
 use crate::bvh::{Intersect, Stack};
-use crate::colour::{Albedo, Colour, WHITE, product, towards_white};
-use crate::kernel::{Kernel, Surface};
+use crate::colour::{Albedo, Colour, WHITE, product};
+use crate::kernel::Kernel;
+use crate::onward::{self, background};
 use crate::profile::{Need, Profile};
+use crate::random::Sample;
 use crate::record::Lustre;
 use crate::scene::Scene;
-use crate::shade::{ColourOf, RayOf, Shaded, SpaceOf, UnitOf, sent, shade};
-use crate::space::Space;
+use crate::shade::{ColourOf, RayOf, Shaded, sent, shade};
 use crate::stats::{RayKind, Stats};
 
 /// Shares below 2^-10 are dropped: a white light of radiance 1 would add a quarter of a gray level.
@@ -29,11 +30,12 @@ pub type Branches<K> = VecView<Branch<K>>;
 /// A ray that goes on from a surface, its share and its kind.
 type GoesOn<P> = Option<(RayOf<P>, Albedo, RayKind)>;
 
-/// What a ray sees whose nearest hit is known.
+/// What a sample's ray sees whose nearest hit is known. Where a surface is rough, chance has a say once a surface.
 pub(crate) fn radiance<P: Profile>(
     scene: &Scene<'_, P>,
     ray: &RayOf<P>,
     hit: u32,
+    sample: Sample,
     stack: &mut Stack<P::Kernel>,
     branches: &mut Branches<P::Kernel>,
     stats: &mut impl Stats,
@@ -46,6 +48,7 @@ pub(crate) fn radiance<P: Profile>(
     let mut total = ColourOf::<P>::default();
     let (mut ray, mut share, mut depth, mut hit) = (ray, WHITE, 0, hit);
     let mut taken;
+    let mut surfaces = 0;
     if P::NEEDS.has(Need::Bounces) {
         branches.clear();
     }
@@ -53,7 +56,12 @@ pub(crate) fn radiance<P: Profile>(
         if let Some(shaded) = shade(scene, ray, hit, stack, stats) {
             total = total.plus(shaded.colour.reflected(&share));
             if let Some(lustre) = shaded.lustre {
-                for (next, share, kind) in go_on(scene, ray, hit, &shaded, lustre, &share).into_iter().flatten() {
+                let numbers = || {
+                    let [_, height, turn, _] = sample.numbers(surfaces);
+                    [height, turn]
+                };
+                let onward = go_on(scene, ray, hit, &shaded, lustre, &share, numbers);
+                for (next, share, kind) in onward.into_iter().flatten() {
                     if P::NEEDS.has(Need::Bounces) && depth < scene.frame.max_depth {
                         stats.ray(kind);
                         // There is room for one a level, and the one that is taken up again at once.
@@ -73,21 +81,10 @@ pub(crate) fn radiance<P: Profile>(
         let Some(next) = branches.pop() else { return total };
         (taken, share, depth) = next;
         ray = &taken;
+        surfaces += 1;
         hit = scene.hits().closest(ray, stack, stats);
         stats.surface(|| scene.bvh.id(hit));
     }
-}
-
-/// What a ray sees that hits nothing.
-fn background<P: Profile>(scene: &Scene<'_, P>, ray: &RayOf<P>) -> ColourOf<P> {
-    let [bottom, top] = &scene.frame.background;
-    // One colour is that colour, under a profile with skies too: shares of rounding would take some of it away.
-    if !P::NEEDS.has(Need::Sky) || bottom == top {
-        return Colour::constant(bottom);
-    }
-    let [down, up] = SpaceOf::<P>::altitude(P::Kernel::heading(ray));
-    let lit = |radiance, share| ColourOf::<P>::lit(&ColourOf::<P>::light(radiance), share);
-    lit(bottom, down).plus(lit(top, up))
 }
 
 /// The rays that go on from a surface: the one that passes it, and the mirrored one.
@@ -98,66 +95,23 @@ fn go_on<P: Profile>(
     shaded: &Shaded<'_, P>,
     lustre: &Lustre,
     share: &Albedo,
+    numbers: impl FnOnce() -> [u32; 2],
 ) -> [GoesOn<P>; 2] {
     let along = P::Kernel::heading(ray);
-    let surface = &shaded.surface;
-    let bent = if P::NEEDS.has(Need::Refraction) && lustre.refracted != [0; 3] {
-        let eta_q28 = lustre.eta_q28[usize::from(!surface.front)];
-        turned(shaded, false, |normal| SpaceOf::<P>::refract(along, normal, eta_q28))
-    } else {
-        None
-    };
-    let [mirror, pass] = shares(shaded, lustre, bent);
-    let leave = |from: &Surface<SpaceOf<P>>, direction, colour: &Albedo, kind| -> GoesOn<P> {
-        let share = product(share, colour);
-        let is_seen = share.iter().any(|&channel| channel >= LEAST);
-        let ray = is_seen.then(|| P::Kernel::leaving(scene.settings, from, direction, hit))??;
-        Some((ray, share, kind))
-    };
+    let bent = onward::bent(shaded, lustre, along);
+    let [mirror, pass] = onward::shares(shaded, lustre, bent);
+    let seen = |colour: &Albedo| Some(product(share, colour)).filter(|share| share.iter().any(|&channel| channel >= LEAST));
     let passing = bent.and_then(|direction| {
-        let behind = Surface { normal: SpaceOf::<P>::negate(surface.normal), ..*surface };
-        leave(&behind, direction, &pass, RayKind::Refraction)
+        let share = seen(&pass)?;
+        Some((onward::passing(scene, shaded, direction, hit)?, share, RayKind::Refraction))
     });
     let mirrored = if P::NEEDS.has(Need::Reflection) && mirror != [0; 3] {
-        let direction = turned(shaded, true, |normal| Some(SpaceOf::<P>::reflect(along, normal)));
-        direction.and_then(|direction| leave(surface, direction, &mirror, RayKind::Reflection))
+        seen(&mirror).and_then(|share| {
+            let direction = onward::mirrored(shaded, lustre, along, numbers)?;
+            Some((onward::leaving(scene, shaded, direction, hit)?, share, RayKind::Reflection))
+        })
     } else {
         None
     };
     [passing, mirrored]
-}
-
-/// A direction turned by the shading normal, where that faces the ray and sends it to the side of the surface that it is
-/// to be on, else by the surface's own.
-fn turned<P: Profile>(
-    shaded: &Shaded<'_, P>,
-    stays: bool,
-    turn: impl Fn(UnitOf<P>) -> Option<UnitOf<P>>,
-) -> Option<UnitOf<P>> {
-    let own = shaded.surface.normal;
-    if P::NEEDS.has(Need::SmoothNormals) && shaded.cosine.is_some() && shaded.normal != own {
-        match turn(shaded.normal) {
-            Some(out) if SpaceOf::<P>::cosine(out, own).is_some() != stays => {}
-            other => return other,
-        }
-    }
-    turn(own)
-}
-
-/// What is reflected and what passes. Where nothing can pass, all that would is reflected.
-fn shares<P: Profile>(shaded: &Shaded<'_, P>, lustre: &Lustre, bent: Option<UnitOf<P>>) -> [Albedo; 2] {
-    let Some(bent) = bent else {
-        let mirrored = if lustre.refracted == [0; 3] { &lustre.reflected } else { &lustre.mirrored };
-        return [towards_white(mirrored, shaded.whiteness), [0; 3]];
-    };
-    let (reflected, refracted) = (&lustre.reflected, &lustre.refracted);
-    if !P::NEEDS.has(Need::Schlick) || lustre.flags & Lustre::FRESNEL == 0 {
-        return [*reflected, *refracted];
-    }
-    // The angle is wider on the thinner side.
-    let is_denser_behind = shaded.surface.front == (lustre.eta_q28[0] <= 1 << 28);
-    let cosine =
-        if is_denser_behind { shaded.cosine } else { SpaceOf::<P>::cosine(SpaceOf::<P>::negate(bent), shaded.normal) };
-    let mirror = ColourOf::<P>::share(SpaceOf::<P>::fresnel(cosine.unwrap_or_default(), lustre.r0));
-    [product(reflected, &[mirror; 3]), product(refracted, &[u16::MAX - mirror; 3])]
 }

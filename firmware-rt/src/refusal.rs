@@ -74,5 +74,7 @@ fn name(need: Need) -> defmt::Str {
         Need::SharedVertices => defmt::intern!("shared vertices"),
         Need::IdsInRecords => defmt::intern!("ids in records"),
         Need::Ids => defmt::intern!("ids of their own"),
+        Need::Paths => defmt::intern!("paths"),
+        Need::Roughness => defmt::intern!("rough mirrors"),
     }
 }

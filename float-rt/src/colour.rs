@@ -74,6 +74,14 @@ impl<F: Real> Colour for RgbF<F> {
         Self(self.0.map(|light| if light < F::ONE { light } else { F::ONE }))
     }
 
+    fn to_q16(self) -> [u32; 3] {
+        self.clamped().0.map(|light| (light.ldexp(16) + F::ONE.ldexp(-1)).to_i32().max(0) as u32)
+    }
+
+    fn from_q16(light: [u32; 3]) -> Self {
+        Self(light.map(|light| F::from_i64(light.into()).ldexp(-16)))
+    }
+
     #[inline]
     fn mean(self, samples: u16) -> Self {
         let samples = F::from_i32(samples.max(1).into());

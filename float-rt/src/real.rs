@@ -40,6 +40,8 @@ pub trait Real:
     fn floor(self) -> Self;
     /// `self` to the power of `exponent`, within an ulp.
     fn pow(self, exponent: Self) -> Self;
+    /// Cosine and sine of so many half turns, within an ulp and what pi is off.
+    fn on_circle(self) -> [Self; 2];
     /// `self * 2^exponent`.
     fn ldexp(self, exponent: i32) -> Self;
     /// The total order of IEEE 754.
@@ -47,7 +49,7 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($real:ident, $sqrt:ident, $floor:ident, $pow:ident, $ldexp:ident) => {
+    ($real:ident, $sqrt:ident, $floor:ident, $pow:ident, $sincos:ident, $ldexp:ident) => {
         impl Real for $real {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
@@ -82,6 +84,10 @@ macro_rules! real {
             fn pow(self, exponent: Self) -> Self {
                 libm::$pow(self, exponent)
             }
+            fn on_circle(self) -> [Self; 2] {
+                let (sine, cosine) = libm::$sincos(self * core::$real::consts::PI);
+                [cosine, sine]
+            }
             #[inline]
             fn ldexp(self, exponent: i32) -> Self {
                 libm::$ldexp(self, exponent)
@@ -93,5 +99,5 @@ macro_rules! real {
         }
     };
 }
-real!(f32, sqrtf, floorf, powf, ldexpf);
-real!(f64, sqrt, floor, pow, ldexp);
+real!(f32, sqrtf, floorf, powf, sincosf, ldexpf);
+real!(f64, sqrt, floor, pow, sincos, ldexp);

@@ -122,6 +122,20 @@ impl<F: Real> Space for FloatSpace<F> {
         Some(add(scale(along, eta), scale(normal, eta * cosine - behind)))
     }
 
+    /// The middles of 2^32 heights, and of as many turns less an eighth.
+    fn anywhere([height, turn]: [u32; 2]) -> Triple<F> {
+        let middle = |number: u32| F::from_i64(2 * i64::from(number) + 1 - (1 << 32)).ldexp(-32);
+        let z = middle(height);
+        let across = ((F::ONE - z) * (F::ONE + z)).sqrt();
+        // From -1/8 of a turn to 7/8: half a turn and 3/8 more than half of the number's.
+        let [cosine, sine] = (middle(turn) + F::from_i32(3).ldexp(-2)).on_circle();
+        [across * cosine, across * sine, z]
+    }
+
+    fn strewn(unit: Triple<F>, by: Triple<F>, share: u16) -> Option<Triple<F>> {
+        normalise(add(unit, scale(by, F::from_i32(share.into()) / F::from_i32(65_535))))
+    }
+
     #[inline]
     fn halfway(a: Triple<F>, b: Triple<F>) -> Option<Triple<F>> {
         normalise(add(a, b))

@@ -73,6 +73,7 @@ fn of<K: Kernel>(scene: &Scene<'_, Full<K>>, header: &Header, need: Need) -> Ask
         Need::Bounces => shiny(&|l| l.reflected != [0; 3] || l.refracted != [0; 3]),
         Need::TintedShadow => shiny(&|l| l.shadow != [0; 3]),
         Need::Schlick => shiny(&|l| l.flags & (Lustre::FRESNEL | Lustre::METAL) != 0),
+        Need::Roughness => shiny(&|l| l.roughness != 0),
         Need::Checker => materials(&|m, _| m.checker != 0, size_of::<core_rt::record::Checker>()),
         Need::Spheres => things(counts.spheres.into(), "sphere", size_of_val(scene.bvh.spheres)),
         Need::VertexColours => things(triangles, "triangle", paint.colour_indices.size() + size_of_val(paint.colours)),
@@ -92,6 +93,7 @@ fn of<K: Kernel>(scene: &Scene<'_, Full<K>>, header: &Header, need: Need) -> Ask
         | Need::Sky
         | Need::Orthographic
         | Need::Supersampling
+        | Need::Paths
         | Need::Bilinear
         | Need::Rgb888
         | Need::Rgb565

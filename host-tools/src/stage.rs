@@ -4,13 +4,16 @@
 //! So a camera that the grid of a blob reaches needs no new blob, and where the grid is the one that the kernel would
 //! have for that camera, the picture is that of a blob made for it, bit for bit.
 
+use std::ops::Range;
+
 use core_rt::blob::Header;
 use core_rt::camera::{Camera, Use};
 use core_rt::kernel::{Bounds, Kernel};
+use core_rt::path::{self, Sum};
 use core_rt::profile::{Full, Need};
 use core_rt::record::Light;
 use core_rt::render::Tile;
-use core_rt::scene::{Scene, Shading};
+use core_rt::scene::{MAX_DEPTH, Scene, Shading};
 use core_rt::stats::Counts;
 
 use crate::grid::Grid;
@@ -34,6 +37,25 @@ pub trait Stage: Send + Sync + std::fmt::Debug {
     /// The pixels of a tile, row by row, and the work that they took. The tile lies in the picture of the last
     /// [`look`](Stage::look).
     fn tile(&self, tile: Tile) -> (Vec<[u8; 3]>, Counts);
+
+    /// Whether it draws by paths, and so samples can be summed.
+    fn follows_paths(&self) -> bool {
+        false
+    }
+
+    /// Adds samples, by their numbers, of each pixel of a tile to sums, row by row, a sum a pixel; and the work that they took.
+    /// Sums do not depend on the ranges that samples are added in. Nothing is added where no paths are followed.
+    fn add_samples(&self, tile: Tile, samples: Range<u16>, sums: &mut [Sum]) -> Counts {
+        let _ = (tile, samples, sums);
+        Counts::default()
+    }
+
+    /// The pixels of a tile whose sums are of so many samples: after `0..n` samples those of [`tile`](Stage::tile) for a
+    /// model with n. Where no paths are followed, those as they are.
+    fn mean(&self, tile: Tile, sums: &[Sum], samples: u16) -> Vec<[u8; 3]> {
+        let _ = (sums, samples);
+        self.tile(tile).0
+    }
 }
 
 /// A blob's scene, drawn by its kernel.
@@ -51,6 +73,11 @@ impl<'a, K: Kernel> Staged<'a, K> {
         let bounds = scene.bvh.bounds().reduce(|a, b| a.union(&b))?;
         Some(Self { lights: scene.shading.lights.to_vec(), grid: source_grid(&header.source)?, scene, bounds })
     }
+
+    /// With the lights where they are now.
+    fn scene(&self) -> Scene<'_, Full<K>> {
+        Scene { shading: Shading { lights: &self.lights, ..self.scene.shading }, ..self.scene }
+    }
 }
 
 impl<K: Kernel> Stage for Staged<'_, K> {
@@ -63,9 +90,11 @@ impl<K: Kernel> Stage for Staged<'_, K> {
         let [Ok(width), Ok(height)] = model.render.size.map(u16::try_from) else { return false };
         let Ok(samples) = u16::try_from(model.render.samples) else { return false };
         let parallel = matches!(model.camera.projection, Projection::Orthographic { .. });
-        let used = Use { size: [width, height], parallel, sampled: samples > 1 };
+        let paths = needs.has(Need::Paths);
+        let used = Use { size: [width, height], parallel, sampled: samples > 1 || paths };
         if used.parallel != needs.has(Need::Orthographic)
-            || used.sampled && !needs.has(Need::Supersampling)
+            || model.render.paths != paths
+            || samples > 1 && !paths && !needs.has(Need::Supersampling)
             || used.size.contains(&0)
             || samples == 0
         {
@@ -88,10 +117,33 @@ impl<K: Kernel> Stage for Staged<'_, K> {
     }
 
     fn tile(&self, tile: Tile) -> (Vec<[u8; 3]>, Counts) {
-        let scene = Scene { shading: Shading { lights: &self.lights, ..self.scene.shading }, ..self.scene };
+        let scene = self.scene();
         let mut counts = Counts::default();
         let pixels = one_tile(&scene, tile, &mut counts);
         (rgb888(scene.frame.format, &pixels), counts)
+    }
+
+    fn follows_paths(&self) -> bool {
+        self.scene.follows_paths()
+    }
+
+    fn add_samples(&self, tile: Tile, samples: Range<u16>, sums: &mut [Sum]) -> Counts {
+        let mut counts = Counts::default();
+        let mut stack = heapless::Vec::<(u32, K::Distance), MAX_DEPTH>::new();
+        let added = path::add_samples(&self.scene(), tile, samples, &mut stack, sums, &mut counts);
+        // The stack is as deep as any tree.
+        debug_assert!(added.is_ok());
+        counts
+    }
+
+    fn mean(&self, tile: Tile, sums: &[Sum], samples: u16) -> Vec<[u8; 3]> {
+        if !self.follows_paths() {
+            return self.tile(tile).0;
+        }
+        let format = self.scene.frame.format;
+        let mut pixels = vec![0; tile.pixels() * format.bytes()];
+        path::show(&self.scene, tile, sums, samples, &mut pixels);
+        rgb888(format, &pixels)
     }
 }
 

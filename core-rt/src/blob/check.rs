@@ -81,6 +81,7 @@ fn materials_and_lights<P: Profile>(header: &Header, shading: &Shading<'_, P::Ke
     }
     // Where rays may not go on, the background is seen instead of what they would see.
     let goes_on = header.max_depth > 0 || header.background.iter().any(|colour| !colour.is_black());
+    let mut is_rough = false;
     for lustre in shading.lustres {
         let tints = header.needs.has(Need::Shadows) && lustre.shadow != [0; 3];
         let goes_on_in = |share: &Albedo| goes_on && *share != [0; 3];
@@ -90,6 +91,7 @@ fn materials_and_lights<P: Profile>(header: &Header, shading: &Shading<'_, P::Ke
             .with(Need::Refraction, goes_on_in(&lustre.refracted))
             .with(Need::Schlick, lustre.flags & (Lustre::FRESNEL | Lustre::METAL) != 0)
             .with(Need::TintedShadow, tints);
+        is_rough |= lustre.roughness != 0;
         valid &= !P::NEEDS.lustres() || lustre_is_valid(lustre);
     }
     for checker in shading.checkers {
@@ -108,7 +110,14 @@ fn materials_and_lights<P: Profile>(header: &Header, shading: &Shading<'_, P::Ke
     if !valid {
         return Err(BlobError::Shading);
     }
-    used = used.with(Need::Bounces, used.branches() && header.max_depth > 0);
+    // Paths gather what ambient light stands for, and one ray at a time goes on, which waits for none.
+    let paths = header.needs.has(Need::Paths);
+    if paths && !header.ambient.is_black() {
+        return Err(BlobError::Shading);
+    }
+    used = used
+        .with(Need::Bounces, used.branches() && header.max_depth > 0 && !paths)
+        .with(Need::Roughness, used.branches() && is_rough);
     match used.first_missing_in(header.needs) {
         Some(need) => Err(BlobError::Undeclared(need)),
         None => Ok(()),
@@ -141,7 +150,6 @@ fn is_in_range(radiance: &Radiance) -> bool {
 fn lustre_is_valid(lustre: &Lustre) -> bool {
     lustre.flags & !(Lustre::PHONG | Lustre::FRESNEL | Lustre::METAL) == 0
         && lustre.gain <= 15
-        && lustre.reserved == 0
         && !lustre.eta_q28.contains(&0)
 }
 
@@ -164,7 +172,7 @@ fn of_header(header: &Header) -> Needs {
         .with(Need::Ambient, !header.ambient.is_black())
         .with(if header.transfer == Transfer::Srgb { Need::Srgb } else { Need::Linear }, true)
         .with(header.format.need(), true)
-        .with(Need::Supersampling, header.samples > 1)
+        .with(Need::Supersampling, header.samples > 1 && !header.needs.has(Need::Paths))
         .with(Need::Sky, header.background[0] != header.background[1])
 }
 

@@ -4,11 +4,13 @@
 //! and every plain operator is expected not to overflow: builds with overflow checks trap where an
 //! argument is wrong. Where wrapping is meant, the operation says so.
 
+mod circle;
 mod length;
 mod power;
 mod recip;
 mod rsqrt;
 
+pub use circle::{on_circle_q15, on_circle_q30};
 pub use length::{BitLength, byte_length};
 pub use power::power;
 pub use recip::{RECIPROCAL_ERROR_BITS, Reciprocal16, mantissa, reciprocal};

@@ -7,9 +7,11 @@ use core::num::NonZeroU32;
 use fixed::types::{I2F14, U16F16};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-use super::{Space, faded, fresnel_q16, is_unit_q30, raised_q31};
+use super::{Space, faded, fresnel_q16, is_unit_q30, raised_q31, share_q15};
 use crate::colour::{Radiance, Rgb16};
-use crate::num::{BitLength, Triple, bits, dot, inverse_sqrt_u32, power, reciprocal, round_shift, sqrt_u32, sub};
+use crate::num::{
+    BitLength, Triple, bits, dot, inverse_sqrt_u32, on_circle_q15, power, reciprocal, round_shift, sqrt_u32, sub,
+};
 use crate::record::{Checker, Reach};
 
 /// The space of 14-bit grids.
@@ -195,6 +197,22 @@ impl Space for Grid14 {
         let behind_q14 = sqrt_u32((1u32 << 28).checked_sub(square_q28)?) as i32;
         let bent = |part: i32, n: I2F14| narrow(part - round_shift(behind_q14 * bits_of(n), 14));
         Some([bent(part[0], normal[0]), bent(part[1], normal[1]), bent(part[2], normal[2])])
+    }
+
+    /// Upper halves of the numbers: 2^16 heights, from -1 to 1 and a unit of 2^-16 off those, and as many turns. A height z in Q16
+    /// is odd, so that (1 - z) (1 + z) is below 2^32; its root, below 2^16, is halved for the product with the circle's Q15.
+    fn anywhere([height, turn]: [u32; 2]) -> Self::Unit {
+        let up_q16 = 2 * (height >> 16) + 1;
+        let across_q15 = ((sqrt_u32(((1 << 17) - up_q16) * up_q16) + 1) >> 1) as i32;
+        let [x, y] = on_circle_q15((turn >> 16) as u16).map(|c_q15| narrow(round_shift(across_q15 * c_q15, 16)));
+        [x, y, narrow(round_shift(up_q16 as i32 - (1 << 16), 2))]
+    }
+
+    /// Each product is at most 2^29.
+    fn strewn(unit: Self::Unit, by: Self::Unit, share: u16) -> Option<Self::Unit> {
+        let share_q15 = share_q15(share) as i32;
+        let sum = |a: I2F14, b: I2F14| (bits_of(a) << 15) + bits_of(b) * share_q15;
+        normalise([sum(unit[0], by[0]), sum(unit[1], by[1]), sum(unit[2], by[2])])
     }
 
     #[inline]

@@ -14,9 +14,9 @@ use fixed::types::U16F16;
 use fixed::types::extra::{U30, U31};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-use super::{Space, faded, is_unit_q30, raised_q31};
+use super::{Space, faded, is_unit_q30, raised_q31, share_q15};
 use crate::colour::{Radiance, Rgb16};
-use crate::num::{Triple, bits, dot, inverse_sqrt_u64, round_shift, sub};
+use crate::num::{Triple, bits, dot, inverse_sqrt_u64, on_circle_q30, round_shift, sqrt_u64, sub};
 use crate::record::{Checker, Reach};
 
 /// The space of 29-bit grids, with `F` (30 or 31) fractional bits in unit vectors and barycentrics.
@@ -196,6 +196,20 @@ impl<F: Fraction> Space for Grid29With<F> {
     #[inline]
     fn refract(along: Self::Unit, normal: Self::Unit, eta_q28: u32) -> Option<Self::Unit> {
         F::refract(along, normal, eta_q28)
+    }
+
+    /// As in 14 bits, with all bits of the numbers: the root is below 2^32, and its half times the circle's Q30 below 2^62.
+    fn anywhere([height, turn]: [u32; 2]) -> Self::Unit {
+        let up_q32 = 2 * u64::from(height) + 1;
+        let across_q31 = ((sqrt_u64(((1 << 33) - up_q32) * up_q32) + 1) >> 1) as i64;
+        let [x, y] = on_circle_q30(turn).map(|c_q30| saturated(round_shift(across_q31 * c_q30, 61 - F::U32)));
+        [x, y, saturated(round_shift(up_q32 as i64 - (1 << 32), 32 - F::U32))]
+    }
+
+    fn strewn(unit: Self::Unit, by: Self::Unit, share: u16) -> Option<Self::Unit> {
+        let (unit, by, share_q15) = (wide(unit), wide(by), i64::from(share_q15(share)));
+        let sum = |a: i64, b: i64| (a << 15) + b * share_q15;
+        normalise([sum(unit[0], by[0]), sum(unit[1], by[1]), sum(unit[2], by[2])])
     }
 
     #[inline]

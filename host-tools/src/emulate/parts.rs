@@ -60,7 +60,7 @@ impl Part {
 }
 
 /// What files are for, by the end of their paths; all others serve whoever calls them.
-const DECIDED: [(&str, Part); 27] = [
+const DECIDED: [(&str, Part); 30] = [
     ("-rt/src/bvh.rs", Part::Traversal),
     ("/boxes.rs", Part::Traversal),
     ("/triangle.rs", Part::Intersection),
@@ -69,6 +69,9 @@ const DECIDED: [(&str, Part); 27] = [
     ("core-rt/src/shade.rs", Part::Shading),
     ("core-rt/src/light.rs", Part::Shading),
     ("core-rt/src/whitted.rs", Part::Shading),
+    ("core-rt/src/onward.rs", Part::Shading),
+    ("core-rt/src/path.rs", Part::Shading),
+    ("core-rt/src/random.rs", Part::Shading),
     ("core-rt/src/albedo.rs", Part::Shading),
     ("core-rt/src/texture.rs", Part::Shading),
     ("core-rt/src/paint.rs", Part::Shading),

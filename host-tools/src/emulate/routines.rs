@@ -14,23 +14,29 @@ use object::{Endianness, Object, ObjectSection, SectionKind};
 /// What is in a file's path, the function (any of the file, if none is named), and the needs each of which asks for it.
 ///
 /// A need that is only a branch has no routine: emission, ambient light, linear pixels, widths, several lights.
-const ROUTINES: [(&str, Option<&str>, &[Need]); 44] = {
+const ROUTINES: [(&str, Option<&str>, &[Need]); 50] = {
     use Need::*;
     [
         ("core-rt/src/bvh.rs", Some("any"), &[Shadows]),
         ("core-rt/src/mesh.rs", Some("assemble"), &[SharedVertices]),
         ("core-rt/src/light.rs", Some("passed"), &[TintedShadow]),
         ("core-rt/src/whitted.rs", Some("go_on"), &[Reflection, Refraction]),
-        ("core-rt/src/whitted.rs", Some("turned"), &[Reflection, Refraction]),
-        ("core-rt/src/whitted.rs", Some("shares"), &[Reflection, Refraction]),
+        ("core-rt/src/onward.rs", Some("turned"), &[Reflection, Refraction]),
+        ("core-rt/src/onward.rs", Some("shares"), &[Reflection, Refraction]),
+        ("core-rt/src/onward.rs", Some("strewn"), &[Paths, Roughness]),
+        ("core-rt/src/path.rs", None, &[Paths]),
+        ("core-rt/src/random.rs", None, &[Paths, Roughness]),
+        ("core-rt/src/num/circle.rs", None, &[Paths, Roughness]),
+        ("core-rt/src/space/grid", Some("anywhere"), &[Paths, Roughness]),
+        ("core-rt/src/space/grid", Some("strewn"), &[Paths, Roughness]),
         ("core-rt/src/shade.rs", Some("lobe"), &[BlinnPhong, Phong]),
         ("core-rt/src/num/power.rs", None, &[BlinnPhong, Phong]),
         ("core-rt/src/scene.rs", Some("normals"), &[SmoothNormals]),
-        ("core-rt/src/samples.rs", None, &[Supersampling]),
-        ("core-rt/src/camera.rs", Some("through"), &[Supersampling]),
+        ("core-rt/src/samples.rs", None, &[Supersampling, Paths]),
+        ("core-rt/src/camera.rs", Some("through"), &[Supersampling, Paths]),
         ("core-rt/src/camera.rs", Some("parallel"), &[Orthographic]),
         ("core-rt/src/camera.rs", Some("along"), &[Orthographic]),
-        ("core-rt/src/colour.rs", Some("mean"), &[Supersampling]),
+        ("core-rt/src/colour.rs", Some("mean"), &[Supersampling, Paths]),
         ("core-rt/src/colour.rs", Some("doubled"), &[BlinnPhong, Phong]),
         ("core-rt/src/colour.rs", Some("tinted"), &[TintedShadow]),
         ("core-rt/src/colour.rs", Some("times"), &[Falloff]),

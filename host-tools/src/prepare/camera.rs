@@ -23,10 +23,15 @@ pub(crate) fn camera<K: Kernel>(model: &Model, grid: &Grid) -> CameraHeader {
     }
 }
 
-/// Whether steps are taken along an axis of so many pixels. In a picture of one column (or row) with one sample none is,
-/// and a wide view's would not fit.
+/// Whether samples are anywhere in their pixel, and not one in its middle.
+fn is_sampled(model: &Model) -> bool {
+    model.render.samples > 1 || model.render.paths
+}
+
+/// Whether steps are taken along an axis of so many pixels. In a picture of one column (or row) with one sample in its middle
+/// none is, and a wide view's would not fit.
 fn takes_steps(model: &Model, pixels: f64) -> bool {
-    pixels > 1.0 || model.render.samples > 1
+    pixels > 1.0 || is_sampled(model)
 }
 
 /// Rays from the eye, by a vertical field of view in radians.
@@ -45,7 +50,7 @@ fn perspective<K: Kernel>(model: &Model, fov_y: f64, grid: &Grid) -> CameraHeade
 
     // The largest component of any direction; it is at a corner, since directions are linear in the place. Samples are
     // anywhere in their pixel.
-    let out = if model.render.samples > 1 { 0.5 } else { 0.0 };
+    let out = if is_sampled(model) { 0.5 } else { 0.0 };
     let (last_x, last_y) = (width - 1.0 + out, height - 1.0 + out);
     let largest = [(-out, -out), (last_x, -out), (-out, last_y), (last_x, last_y)]
         .map(|(x, y)| (first + step_right * x + step_down * y).abs().max_element())

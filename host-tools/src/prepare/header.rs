@@ -88,6 +88,11 @@ pub(super) fn background(model: &Model) -> [Radiance; 2] {
     }
 }
 
+/// Light that reaches everything; none where paths gather what it stands for.
+pub(super) fn ambient(model: &Model) -> Radiance {
+    if model.render.paths { Radiance::default() } else { radiance(model.render.ambient) }
+}
+
 /// What the model needs, widths of indices aside.
 pub(super) fn needs(model: &Model, materials: &[Material], lustres: &[Lustre]) -> Needs {
     let shines =
@@ -108,17 +113,19 @@ pub(super) fn needs(model: &Model, materials: &[Material], lustres: &[Lustre]) -
         .with(Need::Shadows, shadows)
         .with(Need::SeveralLights, model.lights.len() > 1)
         .with(Need::Emission, materials.iter().any(|m| !m.emission.is_black()))
-        .with(Need::Ambient, !radiance(model.render.ambient).is_black())
+        .with(Need::Ambient, !ambient(model).is_black())
         .with(Need::Srgb, model.render.transfer == model::Transfer::Srgb)
         .with(Need::Linear, model.render.transfer == model::Transfer::Linear)
         .with(format(model.render.format).need(), true)
-        .with(Need::Supersampling, samples(model) > 1)
+        .with(Need::Supersampling, samples(model) > 1 && !model.render.paths)
         .with(Need::Orthographic, matches!(model.camera.projection, Projection::Orthographic { .. }))
         .with(Need::BlinnPhong, shines(false))
         .with(Need::Phong, shines(true))
         .with(Need::Reflection, reflects)
         .with(Need::Refraction, refracts)
-        .with(Need::Bounces, (reflects || refracts) && max_depth(model) > 0)
+        .with(Need::Bounces, (reflects || refracts) && max_depth(model) > 0 && !model.render.paths)
+        .with(Need::Paths, model.render.paths)
+        .with(Need::Roughness, (reflects || refracts) && lustres.iter().any(|l| l.roughness != 0))
         .with(Need::Schlick, lustres.iter().any(|l| l.flags & (Lustre::FRESNEL | Lustre::METAL) != 0))
         .with(Need::TintedShadow, shadows && lustres.iter().any(|l| l.shadow != [0; 3]))
         .with(Need::Checker, materials.iter().any(|m| m.checker != 0))

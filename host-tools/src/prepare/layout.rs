@@ -135,11 +135,11 @@ pub(super) fn write<K: Kernel>(
         size: model.render.size.map(|s| s.min(u16::MAX.into()) as u16),
         camera: camera::camera::<K>(model, grid),
         background: header::background(model),
-        ambient: header::radiance(model.render.ambient),
+        ambient: header::ambient(model),
         transfer: header::transfer(model.render.transfer),
         format: header::format(model.render.format),
         samples: header::samples(model),
-        max_depth: if needs.branches() { header::max_depth(model) } else { 0 },
+        max_depth: if needs.branches() || model.render.paths { header::max_depth(model) } else { 0 },
         root: parts.root,
         depth: parts.depth,
         counts: Counts {

@@ -46,7 +46,7 @@ pub(super) fn lustre(material: &Material) -> Option<Lustre> {
         gain,
         flags: if highlight.lobe == Lobe::Phong { Lustre::PHONG } else { 0 } | schlick,
         r0: unit(((ior - 1.0) / (ior + 1.0)).powi(2)),
-        reserved: 0,
+        roughness: unit(material.roughness),
     };
     let is_matt = lustre.specular_is_black() && lustre.reflected == [0; 3] && lustre.refracted == [0; 3];
     (!is_matt).then_some(lustre)

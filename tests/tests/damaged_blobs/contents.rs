@@ -117,7 +117,19 @@ fn broken_shading<K: Kernel>() {
                 BlobError::Undeclared(Need::Sky),
             ),
             ("a lustre that does not exist", |d| d.materials[0].lustre = 1, BlobError::Shading),
-            ("a lustre from the future", |d| shiny(d).reserved = 1, BlobError::Shading),
+            (
+                "a roughness that is not declared",
+                |d| {
+                    d.header.needs = d.header.needs.with(Need::Reflection, true).with(Need::Bounces, true);
+                    (shiny(d).reflected, shiny(d).roughness) = ([1; 3], 1);
+                },
+                BlobError::Undeclared(Need::Roughness),
+            ),
+            (
+                "paths in ambient light",
+                |d| d.header.needs = d.header.needs.with(Need::Paths, true).with(Need::Ambient, true),
+                BlobError::Shading,
+            ),
             ("a law of highlights from the future", |d| shiny(d).flags = 8, BlobError::Shading),
             ("highlights that are too bright", |d| shiny(d).gain = 16, BlobError::Shading),
             ("an index of refraction of nothing", |d| shiny(d).eta_q28[1] = 0, BlobError::Shading),

@@ -75,7 +75,7 @@ fn lustres() -> [Lustre; 4] {
         gain: 15,
         flags,
         r0: u16::MAX,
-        reserved: 0,
+        roughness: u16::MAX,
     };
     let both = Lustre::FRESNEL | Lustre::METAL;
     [
@@ -99,6 +99,7 @@ fn glossy<K: Kernel>(draft: &mut Draft<K>, choice: usize) {
         Need::Falloff,
         Need::Sky,
         Need::Bounces,
+        Need::Roughness,
     ];
     draft.header.needs = needs.into_iter().fold(draft.header.needs, |needs, need| needs.with(need, true));
     draft.header.max_depth = 2;
