@@ -100,7 +100,8 @@ fn go_on<P: Profile>(
     let along = P::Kernel::heading(ray);
     let bent = onward::bent(shaded, lustre, along);
     let [mirror, pass] = onward::shares(shaded, lustre, bent);
-    let seen = |colour: &Albedo| Some(product(share, colour)).filter(|share| share.iter().any(|&channel| channel >= LEAST));
+    let seen =
+        |colour: &Albedo| Some(product(share, colour)).filter(|share| share.iter().any(|&channel| channel >= LEAST));
     let passing = bent.and_then(|direction| {
         let share = seen(&pass)?;
         Some((onward::passing(scene, shaded, direction, hit)?, share, RayKind::Refraction))

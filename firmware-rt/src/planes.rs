@@ -56,6 +56,7 @@ fn drawn(scene: &Scene<'_>, transfer: Transfer, mut wire: Wire, board: &Board) -
     let mut bytes = [0; BYTES];
     for tile in Tile::of([width, height], [TILE; 2]) {
         intray_window_begin();
+        let draw = if scene.is_rough() { draw::<true> } else { draw::<false> };
         draw(scene, transfer, tile, &mut bytes);
         intray_window_end();
         let head = TileHead { x: tile.x, y: tile.y, width: tile.width, height: tile.height };
@@ -71,12 +72,13 @@ fn drawn(scene: &Scene<'_>, transfer: Transfer, mut wire: Wire, board: &Board) -
 
 /// Draws one tile. Lanes beyond it are traced for nothing.
 #[inline(never)]
-fn draw(scene: &Scene<'_>, transfer: Transfer, tile: Tile, bytes: &mut [u8; BYTES]) {
+fn draw<const ROUGH: bool>(scene: &Scene<'_>, transfer: Transfer, tile: Tile, bytes: &mut [u8; BYTES]) {
     for top in (0..tile.height).step_by(DOWN.into()) {
         for left in (0..tile.width).step_by(ACROSS.into()) {
             let places: [[u16; 2]; LANES] =
                 core::array::from_fn(|lane| [left + lane as u16 % ACROSS, top + lane as u16 / ACROSS]);
-            let lights = lanes::trace(scene, &places.map(|[x, y]| [tile.x + x, tile.y + y]));
+            let pixels = places.map(|[x, y]| [tile.x + x, tile.y + y]);
+            let lights = if ROUGH { lanes::trace_rough(scene, &pixels) } else { lanes::trace(scene, &pixels) };
             for ([x, y], light) in places.into_iter().zip(lights) {
                 let first = 3 * (usize::from(y) * usize::from(tile.width) + usize::from(x));
                 if x < tile.width

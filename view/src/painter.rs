@@ -12,8 +12,12 @@ use rayon::prelude::*;
 
 use crate::canvas;
 use crate::desk::Desk;
+use crate::film::{Film, passes};
 use crate::kernels::KERNELS;
 use crate::stock::Stock;
+
+/// Samples a pixel of a draft by paths: fewer are all noise, and more make it slow.
+pub const DRAFT_PATHS: u32 = 2;
 
 /// Tiles a thread between two looks at whether the picture is still wanted.
 const BATCH: usize = 4;
@@ -70,7 +74,7 @@ pub struct Wish {
     pub serial: u64,
     /// What it shows.
     pub view: View,
-    /// Of a draft, its size; it has one sample a pixel. `None` for the full picture.
+    /// Of a draft, its size; it has one sample a pixel, or [`DRAFT_PATHS`]. `None` for the full picture.
     pub draft: Option<[u32; 2]>,
 }
 
@@ -83,13 +87,18 @@ pub struct Took {
     pub rays: u64,
 }
 
+/// A tile and its pixels, row by row.
+pub type Painted = (Tile, Vec<[u8; 3]>);
+
 /// What has become of a wish.
 #[derive(Clone, Debug)]
 pub enum Drawn {
     /// A draft.
     Draft(Picture, Took),
     /// Tiles of the full picture.
-    Tiles(Vec<(Tile, Vec<[u8; 3]>)>),
+    Tiles(Vec<Painted>),
+    /// Tiles of the mean of so many samples a pixel, which are fewer than the full picture has.
+    Fewer(Vec<Painted>, u16),
     /// All tiles have been told of.
     Full(Took),
     /// Why there is no picture, for a person.
@@ -105,7 +114,8 @@ pub fn work(scene: &Scene, desk: &Desk<Wish>, pool: &ThreadPool, tell: &(dyn Fn(
         let tell = |drawn| tell(wish.serial, drawn);
         let done = match wish.draft {
             Some(size) => {
-                (model.render.size, model.render.samples) = (size, 1);
+                let few = if model.render.paths { DRAFT_PATHS.min(model.render.samples) } else { 1 };
+                (model.render.size, model.render.samples) = (size, few);
                 draft(&mut stock, &model, wish.view.kernel, pool).map(|(picture, took)| {
                     tell(Drawn::Draft(picture, took));
                 })
@@ -147,6 +157,23 @@ fn full(
     stock.exact(KERNELS[kernel], model, |stage| {
         let tiles = canvas::order(model.render.size.map(|side| side as u16));
         let mut counts = Counts::default();
+        if stage.follows_paths() {
+            let mut film = Film::new(stage, &tiles);
+            for samples in passes(model.render.samples as u16) {
+                let is_last = u32::from(samples.end) == model.render.samples;
+                for first in (0..tiles.len()).step_by(BATCH * pool.current_num_threads()) {
+                    if desk.is_waiting() {
+                        return;
+                    }
+                    let batch = first..tiles.len().min(first + BATCH * pool.current_num_threads());
+                    let (painted, more) = pool.install(|| film.add(batch, &samples));
+                    counts = counts.plus(more);
+                    tell(if is_last { Drawn::Tiles(painted) } else { Drawn::Fewer(painted, samples.end) });
+                }
+            }
+            tell(Drawn::Full(Took { seconds: begin.elapsed().as_secs_f64(), rays: counts.rays() }));
+            return;
+        }
         for batch in tiles.chunks(BATCH * pool.current_num_threads()) {
             if desk.is_waiting() {
                 return;

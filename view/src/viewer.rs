@@ -55,6 +55,8 @@ struct Facts {
     comparison: Option<Box<Comparison>>,
     effort: Option<Result<Effort, String>>,
     failure: Option<String>,
+    /// Samples a pixel of a picture that is to have more.
+    samples: Option<u16>,
 }
 
 /// The state of everything.

@@ -124,7 +124,11 @@ impl Header {
     #[must_use]
     pub fn camera_use(&self, profile: Needs) -> Use {
         let has = |need| profile.has(need) && self.needs.has(need);
-        Use { size: self.size, parallel: has(Need::Orthographic), sampled: has(Need::Supersampling) || has(Need::Paths) }
+        Use {
+            size: self.size,
+            parallel: has(Need::Orthographic),
+            sampled: has(Need::Supersampling) || has(Need::Paths),
+        }
     }
 }
 

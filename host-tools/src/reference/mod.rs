@@ -62,7 +62,7 @@ mod texture;
 mod trace;
 mod triangle;
 
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 
 use core_rt::kernel::NONE;
 use glam::DVec3;
@@ -186,17 +186,33 @@ impl<'m> Reference<'m> {
     fn pixel_witness(&self, size: [u32; 2], x: u32, y: u32) -> (DVec3, Seen) {
         let samples = self.model.render.samples.max(1);
         let mut seen = Seen::default();
-        let sum: DVec3 = (0..)
-            .zip(pattern::points(samples))
-            .map(|(number, place)| {
-                let mut random = Random::new([x, y], number);
-                let [right, down] = if self.model.render.paths { [random.unit(), random.unit()] } else { place };
-                let (origin, direction) = self.camera_ray(size, f64::from(x) + right, f64::from(y) + down);
-                let colour = self.sample_witness(origin, direction, number, &mut random, &mut seen).colour;
-                colour.clamp(DVec3::ZERO, DVec3::ONE)
-            })
-            .sum();
+        let places = pattern::points(samples).map(|place| (!self.model.render.paths).then_some(place));
+        let numbered = (0..).zip(places);
+        let sum: DVec3 = numbered.map(|(number, place)| self.clamped(size, [x, y], number, place, &mut seen)).sum();
         (sum / f64::from(samples), seen)
+    }
+
+    /// The sum of paths, by their numbers, of pixel `(x, y)` of a picture of `size`, linear RGB, each clamped to [0, 1]. Divided by
+    /// their number that of `0..n` is [`Reference::pixel_colour`] for a scene with paths and n samples.
+    pub fn path_sum(&self, size: [u32; 2], x: u32, y: u32, paths: Range<u32>) -> DVec3 {
+        let mut seen = Seen::default();
+        paths.map(|number| self.clamped(size, [x, y], number, None, &mut seen)).sum()
+    }
+
+    /// A sample of a pixel, at a place in it or at a random one, clamped to [0, 1].
+    fn clamped(
+        &self,
+        size: [u32; 2],
+        [x, y]: [u32; 2],
+        number: u32,
+        place: Option<[f64; 2]>,
+        seen: &mut Seen,
+    ) -> DVec3 {
+        let mut random = Random::new([x, y], number);
+        let [right, down] = place.unwrap_or_else(|| [random.unit(), random.unit()]);
+        let (origin, direction) = self.camera_ray(size, f64::from(x) + right, f64::from(y) + down);
+        let colour = self.sample_witness(origin, direction, number, &mut random, seen).colour;
+        colour.clamp(DVec3::ZERO, DVec3::ONE)
     }
 
     /// What a ray sees.

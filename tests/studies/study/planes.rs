@@ -69,7 +69,12 @@ fn spheres() -> Vec<Sphere> {
     let sphere = |(centre, colour): ([i16; 3], [u16; 3])| Sphere {
         centre,
         radius: RADIUS,
-        surface: Surface { lit: colour.map(|c| c * 560), own: colour.map(|c| c * 100), mirror: [1024; 3] },
+        surface: Surface {
+            lit: colour.map(|c| c * 560),
+            own: colour.map(|c| c * 100),
+            mirror: [1024; 3],
+            roughness: 0,
+        },
     };
     CENTRES.into_iter().zip(colours).map(sphere).collect()
 }
@@ -93,7 +98,7 @@ fn camera(size: [u16; 2], length: u16) -> Camera {
 
 fn settings(size: [u16; 2], t_bits: u32) -> Settings {
     let widths = Widths::new(12, 24, 36, t_bits).expect("bits in range");
-    Settings { widths, size, generations: 2, outline: Outline::Nearest }
+    Settings { widths, size, generations: 2, outline: Outline::Nearest, samples: 1 }
 }
 
 fn scene(spheres: &[Sphere], camera: Camera, settings: Settings) -> Scene<'_> {
@@ -117,7 +122,7 @@ fn row(size: [u16; 2], length: u16, bits: u32) -> Row {
         let (origin, direction) = scene.ray(pixel);
         let real = way(&spheres, origin, direction, 2);
         let mut met = Vec::new();
-        pixel::trace_telling(&scene, pixel, |one| met.push(one));
+        pixel::trace_telling(&scene, pixel, 0, |one| met.push(one));
         let (Some(real_first), Some(first)) = (real.first(), met.first()) else { continue };
         if first.sphere != real_first.sphere {
             continue;

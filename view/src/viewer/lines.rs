@@ -47,7 +47,10 @@ impl Viewer {
             (None, Some(after)) => {
                 format!("{begin}: {milliseconds:.0} ms, full {:.0} ms after stopping", 1000.0 * after)
             }
-            (None, None) => format!("{begin}: being drawn"),
+            (None, None) => match self.facts.samples {
+                Some(samples) => format!("{begin}: {samples} samples and more"),
+                None => format!("{begin}: being drawn"),
+            },
         }
     }
 
