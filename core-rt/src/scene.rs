@@ -170,7 +170,7 @@ impl<P: Profile> Scene<'_, P> {
     #[inline(always)]
     #[must_use]
     pub fn follows_paths(&self) -> bool {
-        P::NEEDS.has(Need::Paths) && self.frame.needs.has(Need::Paths)
+        (const { P::NEEDS.has(Need::Paths) }) && self.frame.needs.has(Need::Paths)
     }
 
     /// What finds what rays hit.

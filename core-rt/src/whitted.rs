@@ -42,7 +42,8 @@ pub(crate) fn radiance<P: Profile>(
 ) -> ColourOf<P> {
     // That of no hit is none: it is past the end.
     stats.surface(|| scene.bvh.id(hit));
-    if !P::NEEDS.branches() {
+    // A constant to the compiler itself: of what cannot be reached no instruction is made, to be removed or merged later.
+    if const { !P::NEEDS.branches() } {
         return sent(scene, ray, hit, stack, stats).unwrap_or_else(|| background(scene, ray));
     }
     let mut total = ColourOf::<P>::default();

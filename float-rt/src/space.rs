@@ -122,14 +122,15 @@ impl<F: Real> Space for FloatSpace<F> {
         Some(add(scale(along, eta), scale(normal, eta * cosine - behind)))
     }
 
-    /// The middles of 2^32 heights, and of as many turns less an eighth.
+    /// The middles of 2^32 heights, and of as many turns less an eighth. Above and below are kept apart: next to a pole the
+    /// difference from 1 is all that there is.
     fn anywhere([height, turn]: [u32; 2]) -> Triple<F> {
-        let middle = |number: u32| F::from_i64(2 * i64::from(number) + 1 - (1 << 32)).ldexp(-32);
-        let z = middle(height);
-        let across = ((F::ONE - z) * (F::ONE + z)).sqrt();
-        // From -1/8 of a turn to 7/8: half a turn and 3/8 more than half of the number's.
-        let [cosine, sine] = (middle(turn) + F::from_i32(3).ldexp(-2)).on_circle();
-        [across * cosine, across * sine, z]
+        let number = |number: i64| F::from_i64(number).ldexp(-32);
+        let odd = 2 * i64::from(height) + 1;
+        let (below, above) = (number(odd), number((1 << 33) - odd));
+        let across = (below * above).sqrt();
+        let [cosine, sine] = number(2 * i64::from(turn) + 1 - (1 << 30)).on_circle();
+        [across * cosine, across * sine, number(odd - (1 << 32))]
     }
 
     fn strewn(unit: Triple<F>, by: Triple<F>, share: u16) -> Option<Triple<F>> {

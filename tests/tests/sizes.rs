@@ -55,10 +55,10 @@ fn with(needs: &[Need]) -> Needs {
 }
 
 /// What is looked at: nothing, one thing each, and all of it.
-fn profiles() -> [(&'static str, Needs); 11] {
+fn profiles() -> [(&'static str, Needs); 14] {
     use Need::{
-        Bilinear, BlinnPhong, Bounces, Checker, DirectionalLight, Falloff, Gray8, Linear, Orthographic, PointLight,
-        Reflection, Refraction, Rgb888, Schlick, Shadows, Sky, SmoothNormals, Spheres, Srgb, Supersampling, Texture,
+        Bilinear, BlinnPhong, Bounces, Checker, DirectionalLight, Falloff, Gray8, Linear, Orthographic, Paths, PointLight,
+        Reflection, Refraction, Rgb888, Roughness, Schlick, Shadows, Sky, SmoothNormals, Spheres, Srgb, Supersampling, Texture,
     };
     let other_output = SMALLEST.without(Linear).without(Rgb888).with(Srgb, true).with(Gray8, true);
     [
@@ -73,6 +73,9 @@ fn profiles() -> [(&'static str, Needs); 11] {
         ("shiny", with(&[BlinnPhong, Falloff])),
         ("other output", other_output.with(Orthographic, true).with(Supersampling, true)),
         ("Whitted", WHITTED),
+        ("paths", with(&[Paths])),
+        ("rough", with(&[Reflection, Bounces, Roughness])),
+        ("paths of all kinds", WHITTED.with(Paths, true).with(Roughness, true)),
     ]
 }
 
@@ -115,10 +118,12 @@ const BRANCHES: [Need; 16] = [
 #[test]
 fn what_nothing_asks_for_is_found() {
     for board in boards() {
-        // All of them, in two programs: there is one projection, one transfer and one format in either.
+        // All of them: there is one projection, one transfer and one format in each program.
         let others = WHITTED.without(Need::Srgb).without(Need::Rgb888).with(Need::Linear, true);
         let others = others.with(Need::Orthographic, true).with(Need::SharedVertices, true);
-        let programs = [WHITTED, others.with(Need::Rgb565, true), others.with(Need::Gray8, true)].map(|needs| {
+        let [paths, rough] = [Need::Paths, Need::Roughness].map(|need| WHITTED.with(need, true));
+        let programs = [WHITTED, others.with(Need::Rgb565, true), others.with(Need::Gray8, true), paths, rough];
+        let programs = programs.map(|needs| {
             (needs, { routines(built(board, WHOLE, Prefer::Speed, needs).bytes()).expect("it has debug information") })
         });
         for need in Need::ALL.into_iter().filter(|need| !BRANCHES.contains(need)) {

@@ -29,7 +29,8 @@ pub const SMALLEST: Needs = Needs::NONE
     .with(Need::Linear, true)
     .with(Need::Rgb888, true);
 
-/// All that the light of a scene may need, to sRGB and RGB888: what is left out are other cameras, outputs and wider indices.
+/// All that Whitted's tracing of sharp mirrors may need, to sRGB and RGB888: what is left out are paths and what is rough, other
+/// cameras, outputs and wider indices.
 pub const WHITTED: Needs = Needs::ALL
     .without(Need::Linear)
     .without(Need::WideIds)
@@ -39,14 +40,16 @@ pub const WHITTED: Needs = Needs::ALL
     .without(Need::IdsInRecords)
     .without(Need::Orthographic)
     .without(Need::Rgb565)
-    .without(Need::Gray8);
+    .without(Need::Gray8)
+    .without(Need::Paths)
+    .without(Need::Roughness);
 
 /// Needs without which a need means nothing.
 const fn presupposed(need: Need) -> &'static [Need] {
     match need {
         Need::TintedShadow => &[Need::Shadows],
         Need::WideNormals => &[Need::SmoothNormals],
-        Need::Schlick | Need::Bounces => &[Need::Reflection],
+        Need::Schlick | Need::Bounces | Need::Roughness => &[Need::Reflection],
         Need::Bilinear | Need::WideUvs => &[Need::Texture],
         _ => &[],
     }

@@ -46,7 +46,7 @@ pub(super) fn lustre(material: &Material) -> Option<Lustre> {
         gain,
         flags: if highlight.lobe == Lobe::Phong { Lustre::PHONG } else { 0 } | schlick,
         r0: unit(((ior - 1.0) / (ior + 1.0)).powi(2)),
-        roughness: unit(material.roughness),
+        roughness: if kr + kt > 0.0 { unit(material.roughness) } else { 0 },
     };
     let is_matt = lustre.specular_is_black() && lustre.reflected == [0; 3] && lustre.refracted == [0; 3];
     (!is_matt).then_some(lustre)

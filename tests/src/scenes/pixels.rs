@@ -3,9 +3,9 @@
 use glam::DVec3;
 use host_tools::builtin;
 use host_tools::import::{self, Embedded};
-use host_tools::model::{Format, Model, Projection};
+use host_tools::model::{Background, Format, Material, MaterialKind, Model, Projection, Sphere};
 
-use super::{flat, sun};
+use super::{flat, several_lights, sun};
 use crate::meshes;
 
 /// Name and scene, at golden size.
@@ -20,6 +20,8 @@ pub fn pixels() -> Vec<(&'static str, Model)> {
         ("samples", samples()),
         ("dithered", dithered()),
         ("gray", gray()),
+        ("paths", paths()),
+        ("rough", rough()),
     ]
 }
 
@@ -68,5 +70,36 @@ fn gray() -> Model {
     model.render.size = [32, 24];
     model.render.format = Format::Gray8;
     model.render.samples = 300;
+    model
+}
+
+/// A cuboid that glows in parts, a rough metal ball and a glass one, under a sky: a path has all the ways to go.
+fn paths() -> Model {
+    let mut model = several_lights();
+    let ball = |name: &str, kind, colour, roughness| Material {
+        name: name.into(),
+        kind,
+        colour,
+        roughness,
+        ior: 1.5,
+        ..Material::default()
+    };
+    model.spheres = [DVec3::new(0.95, 0.6, 1.1), DVec3::new(0.4, 0.9, 1.05)]
+        .into_iter()
+        .zip(3..)
+        .map(|(centre, material)| Sphere { centre, radius: 0.25, material })
+        .collect();
+    model.materials.push(ball("metal", MaterialKind::Metal, DVec3::new(0.9, 0.7, 0.4), 0.3));
+    model.materials.push(ball("glass", MaterialKind::Dielectric, DVec3::new(0.7, 1.0, 0.9), 0.1));
+    model.background = Background::Sky { bottom: DVec3::splat(0.1), top: DVec3::new(0.5, 0.7, 1.0) };
+    (model.render.size, model.render.samples, model.render.max_depth) = ([48, 32], 5, 4);
+    (model.render.paths, model.render.ambient) = (true, DVec3::splat(0.2));
+    model
+}
+
+/// The same by Whitted's tree, in ambient light, whose branches are of rough mirrors and of glass.
+fn rough() -> Model {
+    let mut model = paths();
+    (model.render.paths, model.render.samples) = (false, 3);
     model
 }

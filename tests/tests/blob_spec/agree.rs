@@ -6,7 +6,7 @@ use glam::DVec3;
 use host_tools::model::{self, Background, Format, LightKind, Material, Model, Projection, Transfer};
 
 use crate::looks;
-use crate::reader::{Blob, Bounds, Radiance};
+use crate::reader::{Blob, Bounds, Header, Radiance};
 
 pub(crate) type Checked = Result<(), String>;
 
@@ -68,7 +68,7 @@ fn header(blob: &Blob, model: &Model) -> Checked {
         !model.lights.is_empty() && model.render.shadows,
         smooth,
         used.clone().any(|m| model.materials[m as usize].emission != DVec3::ZERO),
-        model.render.ambient != DVec3::ZERO,
+        model.render.ambient != DVec3::ZERO && !model.render.paths,
         !linear,
         linear,
         header.needs >> 33 & 1 == 1 && model.triangles.len() + model.spheres.len() > 65_536,
@@ -88,7 +88,7 @@ fn header(blob: &Blob, model: &Model) -> Checked {
         Format::Gray8 => 2,
     };
     let parallel = matches!(model.camera.projection, Projection::Orthographic { .. });
-    let pixels = u64::from(parallel) << 19 | u64::from(model.render.samples > 1) << 20 | 1 << (25 + format);
+    let pixels = u64::from(parallel) << 19 | u64::from(model.render.samples > 1 && !model.render.paths) << 20 | 1 << (25 + format);
     let (has, shared) = (!blob.triangles.is_empty(), header.needs >> 31 & 1 == 1);
     let bits = |count: usize| count.next_power_of_two().ilog2();
     // The largest material has all its bits set.
@@ -114,7 +114,8 @@ fn header(blob: &Blob, model: &Model) -> Checked {
     };
     let [down, up] = &header.background;
     rule(is_light(down, bottom) && is_light(up, top), "background")?;
-    rule(is_light(&header.ambient, model.render.ambient), "ambient")
+    let ambient = if model.render.paths { DVec3::ZERO } else { model.render.ambient };
+    rule(is_light(&header.ambient, ambient), "ambient")
 }
 
 /// The camera's frame: forward, right, up.
@@ -139,7 +140,7 @@ fn camera(blob: &Blob, model: &Model) -> Checked {
     let is_perspective = matches!(model.camera.projection, Projection::Perspective { .. });
     rule(!is_perspective || header.eye == place(blob, model.camera.position), "eye")?;
     // Twice the place, so that the corners of the picture are whole: they count where there are several samples.
-    let (out, left) = if header.samples > 1 { (1, 2) } else { (0, 0) };
+    let (out, left) = if is_sampled(header) { (1, 2) } else { (0, 0) };
     let last = header.size.map(|side| 2 * (side as i64 - 1) + out);
     let mut starts = Vec::new();
     for (x, y) in [(-out, -out), (last[0], -out), (-out, last[1]), (last[0], last[1])] {
@@ -231,6 +232,11 @@ fn subtree(blob: &Blob, word: u32, holder: Bounds, next: &mut [usize; 3]) -> Res
     Ok(levels)
 }
 
+/// Whether samples are anywhere in their pixels.
+fn is_sampled(header: &Header) -> bool {
+    header.samples > 1 || header.needs >> 35 & 1 == 1
+}
+
 /// The root's boxes are tight, so what is within the span of the vertices is within that of the boxes.
 fn origins(blob: &Blob) -> Checked {
     let header = &blob.header;
@@ -240,7 +246,7 @@ fn origins(blob: &Blob) -> Checked {
     } else {
         // Of the picture's corners, and half a pixel beyond them if need be.
         let f = header.fraction_bits;
-        let (out, half, low) = if header.samples > 1 { (1, 1 << f >> 1, 2) } else { (0, 1 << f >> 1, 0) };
+        let (out, half, low) = if is_sampled(header) { (1, 1 << f >> 1, 2) } else { (0, 1 << f >> 1, 0) };
         let last = header.size.map(|side| 2 * (side as i64 - 1) + out);
         for (x, y) in [(-out, -out), (last[0], -out), (-out, last[1]), (last[0], last[1])] {
             let sum = |axis: usize| 2 * header.first[axis] + x * header.right[axis] + y * header.down[axis];

@@ -60,7 +60,9 @@ pub(crate) fn needs(blob: &Blob, model: &Model) -> u64 {
         (18, tinted && !model.lights.is_empty() && model.render.shadows),
         (28, schlick),
         (30, model.lights.len() > 1),
-        (32, blob.header.max_depth > 0 && (share(2) || share(3))),
+        (32, blob.header.max_depth > 0 && (share(2) || share(3)) && !model.render.paths),
+        (35, model.render.paths),
+        (36, goes_on && used(model).any(|m| m.roughness > 0.0 && weights(m)[2] + weights(m)[3] > 0.0)),
     ]
     .into_iter()
     .fold(0, |bits, (bit, is_needed)| bits | u64::from(is_needed) << bit)
@@ -75,7 +77,7 @@ fn colour(found: [u16; 3], meant: DVec3, gain: u16) -> bool {
 /// Checks the looks of all surfaces.
 pub(crate) fn agree(blob: &Blob, model: &Model) -> Checked {
     let reflects = used(model).any(|m| weights(m)[2..].iter().any(|&share| share > 0.0));
-    let depth = if reflects { model.render.max_depth.min(64) } else { 0 };
+    let depth = if reflects || model.render.paths { model.render.max_depth.min(64) } else { 0 };
     rule(u32::from(blob.header.max_depth) == depth, "depth of reflections")?;
     let triangles =
         blob.triangles.iter().zip(&blob.ids).map(|(t, &id)| (t.material, model.triangles[id as usize].material));
@@ -137,7 +139,9 @@ fn lustre(found: &Lustre, meant: &Material) -> Checked {
     let phong = meant.specular.is_some_and(|s| s.lobe == Lobe::Phong);
     let flags = [(1, phong), (2, is(MaterialKind::Dielectric, meant)), (4, is(MaterialKind::Metal, meant))];
     let flags = flags.into_iter().fold(0, |flags, (flag, is_set)| flags | if is_set { flag } else { 0 });
-    rule(found.flags == flags && found.reserved == 0, "flags")?;
+    rule(found.flags == flags, "flags")?;
+    let roughness = if kr + kt > 0.0 { meant.roughness } else { 0.0 };
+    rule((f64::from(found.roughness) - 65_535.0 * roughness).abs() <= 0.5, "roughness")?;
     let [entering, leaving] = found.eta.map(|eta| f64::from(eta) / 2_f64.powi(28));
     let close = |found: f64, meant: f64| (found - meant).abs() <= 2_f64.powi(-28);
     rule(close(entering, 1.0 / meant.ior) && close(leaving, meant.ior), "index of refraction")?;

@@ -157,6 +157,10 @@ fn looks_are_read_by_the_document() {
         for name in ["materials", "glass", "mirrors", "spheres"] {
             let mut model = gallery(name);
             model.materials.iter_mut().for_each(|m| m.tinted_shadow |= name == "glass");
+            if name == "mirrors" {
+                (model.render.paths, model.render.ambient) = (true, DVec3::ONE);
+                model.materials.iter_mut().for_each(|m| m.roughness = 0.3);
+            }
             let shiny = model.materials.iter_mut().filter_map(|m| m.specular.as_mut());
             shiny.for_each(|s| s.lobe = if name == "materials" { Lobe::Phong } else { Lobe::BlinnPhong });
             let found = prepared(&model, kernel);
@@ -171,6 +175,7 @@ fn looks_are_read_by_the_document() {
             let lustre = usize::from(found.materials.iter().map(|m| m.lustre).max().unwrap()) - 1;
             assert_eq!(fault(&|b| b.lustres[lustre].eta[1] += 2), "index of refraction");
             assert_eq!(fault(&|b| b.lustres[lustre].flags ^= 1), "flags");
+            assert_eq!(fault(&|b| b.lustres[lustre].roughness ^= 2), "roughness");
             assert_eq!(fault(&|b| b.lustres[lustre].colours[2][1] ^= 2), "mirror image of all light");
             assert_eq!(fault(&|b| b.lustres[lustre].colours[4][2] ^= 2), "shadow");
             assert_eq!(fault(&|b| b.lights[0].reach.0 ^= 1 << 15), "reach of a light");
@@ -182,7 +187,7 @@ fn looks_are_read_by_the_document() {
             }
         }
     }
-    for bit in [10, 11, 12, 13, 15, 16, 17, 18, 28, 30, 32] {
+    for bit in [10, 11, 12, 13, 15, 16, 17, 18, 28, 30, 32, 35, 36] {
         assert!(seen >> bit & 1 == 1, "no scene of these has need {bit}");
     }
 }

@@ -165,7 +165,7 @@ pub(crate) struct Lustre {
     pub(crate) gain: u16,
     pub(crate) flags: u16,
     pub(crate) r0: u16,
-    pub(crate) reserved: u16,
+    pub(crate) roughness: u16,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -310,7 +310,7 @@ pub(crate) fn read(bytes: &[u8]) -> Blob {
         let rest = words(5);
         let eta = [0, 2].map(|i| u32::from(eta[i]) | u32::from(eta[i + 1]) << 16);
         let colours = [0, 3, 6, 9, 12].map(|i| [colours[i], colours[i + 1], colours[i + 2]]);
-        Lustre { eta, colours, exponent: rest[0], gain: rest[1], flags: rest[2], r0: rest[3], reserved: rest[4] }
+        Lustre { eta, colours, exponent: rest[0], gain: rest[1], flags: rest[2], r0: rest[3], roughness: rest[4] }
     });
     let checkers = cursor.section(checker_count, |c| Checker {
         step: c.unsigned(8),

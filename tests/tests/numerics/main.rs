@@ -2,6 +2,7 @@
 //! integers. One table holds all tolerances; an entry that is too generous fails as stale.
 
 mod boxes;
+mod chance;
 mod hits;
 mod optics;
 mod paint;
@@ -21,7 +22,7 @@ use tests::random::SplitMix64;
 
 /// The largest error of each operation, in the unit that its name gives. What is measured must be at most this, and at
 /// least a quarter of it.
-const TOLERANCES: [(&str, f64); 76] = [
+const TOLERANCES: [(&str, f64); 84] = [
     ("sample's step, units of a coefficient", 2.0),
     ("exact14 normalise, 2^-14", 3.0),
     ("exact29 normalise, 2^-30", 3.0),
@@ -34,6 +35,8 @@ const TOLERANCES: [(&str, f64); 76] = [
     ("exact14 point, grid units", 0.28125),
     ("exact20 point, grid units", 0.00390625),
     ("exact29 point, grid units", 0.00390625),
+    ("14 anywhere, 2^-14", 4.0),
+    ("14 strewn, 2^-14", 4.0),
     ("14 altitude, 2^-16", 0.0),
     ("14 cubes, 2^-16", 6.0),
     ("14 faded, 2^-16", 8.0),
@@ -47,6 +50,8 @@ const TOLERANCES: [(&str, f64); 76] = [
     ("14 lobe to 10000, 2^-16", 25.0),
     ("14 reflect, 2^-14", 1.25),
     ("14 refract, 2^-14", 6.0),
+    ("29 anywhere, 2^-30", 4.0),
+    ("29 strewn, 2^-30", 4.0),
     ("29 altitude, 2^-16", 1.0),
     ("29 cubes, 2^-16", 0.0),
     ("29 faded, 2^-16", 4.0),
@@ -60,6 +65,8 @@ const TOLERANCES: [(&str, f64); 76] = [
     ("29 lobe to 10000, 2^-16", 25.0),
     ("29 reflect, 2^-30", 1.25),
     ("29 refract, 2^-30", 3.0),
+    ("Q31 anywhere, 2^-30", 4.0),
+    ("Q31 strewn, 2^-30", 4.0),
     ("Q31 altitude, 2^-16", 1.0),
     ("Q31 cubes, 2^-16", 0.0),
     ("Q31 faded, 2^-16", 4.0),
@@ -73,6 +80,8 @@ const TOLERANCES: [(&str, f64); 76] = [
     ("Q31 lobe to 10000, 2^-16", 2.5),
     ("Q31 reflect, 2^-30", 8.0),
     ("Q31 refract, 2^-30", 20000.0),
+    ("f32 anywhere, 2^-24", 4.0),
+    ("f32 strewn, 2^-24", 4.0),
     ("f32 altitude, 2^-16", 0.0025),
     ("f32 cubes, 2^-16", 8.0),
     ("f32 faded, 2^-16", 0.02),

@@ -18,6 +18,8 @@ type Float = FloatSpace<f32>;
 /// How a space's numbers read.
 trait Read: Space {
     const NAME: &'static str;
+    /// Bits of a random number that count.
+    const NUMBER_BITS: u32;
     /// Fractional bits of a point.
     const POINT_BITS: i32;
     /// Points are below 2 to this, in grid units.
@@ -32,9 +34,10 @@ trait Read: Space {
 }
 
 macro_rules! fixed_space {
-    ($space:ty, $name:literal, $point_bits:literal, $grid_bits:literal) => {
+    ($space:ty, $name:literal, $number_bits:literal, $point_bits:literal, $grid_bits:literal) => {
         impl Read for $space {
             const NAME: &'static str = $name;
+            const NUMBER_BITS: u32 = $number_bits;
             const POINT_BITS: i32 = $point_bits;
             const GRID_BITS: u32 = $grid_bits;
             fn vector(unit: Self::Unit) -> DVec3 {
@@ -61,12 +64,13 @@ macro_rules! fixed_space {
         }
     };
 }
-fixed_space!(Grid14, "14", 4, 15);
-fixed_space!(Grid29, "29", 8, 29);
-fixed_space!(GridQ31, "Q31", 8, 29);
+fixed_space!(Grid14, "14", 16, 4, 15);
+fixed_space!(Grid29, "29", 32, 8, 29);
+fixed_space!(GridQ31, "Q31", 32, 8, 29);
 
 impl Read for Float {
     const NAME: &'static str = "f32";
+    const NUMBER_BITS: u32 = 32;
     const POINT_BITS: i32 = 0;
     const GRID_BITS: u32 = 24;
     fn vector(unit: [f32; 3]) -> DVec3 {
@@ -159,6 +163,44 @@ fn halfways<S: Read>() -> f64 {
             return None;
         }
         Some((S::vector(found?) - sum.normalize()).abs().max_element() * sum.length() / 2.0)
+    })
+}
+
+/// The point of the sphere that two random numbers mean: heights and turns in the middles of their steps.
+fn anywhere(numbers: [u32; 2], bits: u32) -> DVec3 {
+    let [height, turn] = numbers.map(|n| (f64::from(n >> (32 - bits)) + 0.5) * libm::ldexp(1.0, -(bits as i32)));
+    let (sine, cosine) = libm::sincos(2.0 * std::f64::consts::PI * (turn - 0.125));
+    let across = 2.0 * (height * (1.0 - height)).sqrt();
+    DVec3::new(across * cosine, across * sine, 2.0 * height - 1.0)
+}
+
+/// Random numbers, often at an end: of all, or of a quarter of a turn.
+fn numbers(random: &mut SplitMix64) -> [u32; 2] {
+    [0; 2].map(|_| match random.below(4) {
+        0 => (random.below(9) as u32).wrapping_sub(4),
+        1 => (random.below(4) << 30) as u32 | (random.below(9) as u32).wrapping_sub(4) >> 2,
+        _ => random.below(1 << 32) as u32,
+    })
+}
+
+fn anywheres<S: Read>() -> f64 {
+    worst(300_000, 10, |random| {
+        let numbers = numbers(random);
+        Some((S::vector(S::anywhere(numbers)) - anywhere(numbers, S::NUMBER_BITS)).abs().max_element())
+    })
+}
+
+/// Where two directions nearly cancel, what is left is little: errors are times its length.
+fn strewings<S: Read>() -> f64 {
+    worst(300_000, 11, |random| {
+        let (a, b) = (unit::<S>(direction(random)), S::anywhere(numbers(random)));
+        let share = [0, 1, 0x7fff, 0x8000, u16::MAX, random.below(1 << 16) as u16][random.below(6) as usize];
+        let sum = S::vector(a) + S::vector(b) * (f64::from(share) / 65_535.0);
+        let found = S::strewn(a, b, share);
+        if sum.length() < 1e-3 {
+            return None;
+        }
+        Some((S::vector(found?) - sum.normalize()).abs().max_element() * sum.length())
     })
 }
 
@@ -277,6 +319,8 @@ where
     in_units("reflect", bits, reflections::<S>());
     in_units("refract", bits, refractions::<S>());
     in_units("halfway", bits, halfways::<S>());
+    in_units("anywhere", bits, anywheres::<S>());
+    in_units("strewn", bits, strewings::<S>());
     for exponent in [1, 10, 100, 1000, 10_000] {
         in_units(&format!("lobe to {exponent}"), 16, lobes::<S>(exponent));
     }
