@@ -13,7 +13,7 @@ use crate::painter::Painted;
 /// The samples that each frame adds: one, then as many as there are, so that all frames together take as long as one of all
 /// samples.
 pub(crate) fn passes(samples: u16) -> impl Iterator<Item = Range<u16>> {
-    let mut done = 0;
+    let mut done: u16 = 0;
     std::iter::from_fn(move || {
         let range = done..done.saturating_mul(2).clamp(1, samples.max(1));
         done = range.end;

@@ -36,6 +36,9 @@ impl Viewer {
     fn picture_line(&self) -> String {
         let [width, height] = self.canvas.size();
         let begin = format!("{} {width}x{height}", self.kernel());
+        if let (Some(samples), None) = (self.facts.samples, self.facts.full_after) {
+            return format!("{begin}: {samples} samples and more");
+        }
         let Some(took) = self.facts.took else { return begin };
         let milliseconds = 1000.0 * took.seconds;
         match (self.wish.and_then(|wish| wish.draft), self.facts.full_after) {
@@ -47,10 +50,7 @@ impl Viewer {
             (None, Some(after)) => {
                 format!("{begin}: {milliseconds:.0} ms, full {:.0} ms after stopping", 1000.0 * after)
             }
-            (None, None) => match self.facts.samples {
-                Some(samples) => format!("{begin}: {samples} samples and more"),
-                None => format!("{begin}: being drawn"),
-            },
+            (None, None) => format!("{begin}: being drawn"),
         }
     }
 

@@ -222,3 +222,18 @@ fn a_pad_steers_and_rests() {
     viewer.let_go(1.25);
     assert!(viewer.steer().is_still());
 }
+
+#[test]
+fn samples_that_are_to_be_more_are_seen_and_are_not_the_full_picture() {
+    let mut viewer = viewer();
+    let first = wish(viewer.tick(0.0));
+    let tiles = |grey| order([64, 48]).into_iter().map(|tile| (tile, vec![[grey; 3]; tile.pixels()])).collect();
+    for (samples, grey) in [(1, 30), (2, 60)] {
+        viewer.update(Update::Drawn(first.serial, Drawn::Fewer(tiles(grey), samples)), 0.5);
+        assert_eq!((viewer.canvas.picture().pixels()[0], viewer.full()), ([grey; 3], None));
+        assert!(viewer.lines()[0].ends_with(&format!("{samples} samples and more")), "{:?}", viewer.lines());
+    }
+    assert!(viewer.tick(0.6).is_none());
+    full(&mut viewer, first, 90, 1.0);
+    assert_eq!(viewer.full().map(|full| full.pixels()[0]), Some([90; 3]));
+}

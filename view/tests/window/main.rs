@@ -115,6 +115,31 @@ fn the_tracer_of_spheres_is_switched_to_where_there_are_spheres_alone() {
 }
 
 #[test]
+fn samples_of_paths_add_up_to_the_picture_of_render() {
+    let Some(display) = Display::start() else { return };
+    let folder = folder();
+    let scene = folder.path().join("scene.toml");
+    let text = fs::read_to_string(&scene).unwrap().replace("[render]", "[render]\npaths = true\nsamples = 10");
+    fs::write(&scene, text).unwrap();
+    let session = bare(&display, &folder, "scene.toml --size 120x90");
+    let still = rendered(&scene, "exact29", [120, 90]);
+    session.wait_for(&still);
+    session.press(Key::digit(2));
+    session.wait_for(&rendered(&scene, "exact14", [120, 90]));
+    session.press(Key::digit(0));
+    session.hold(&[Key::W, Key::D], 300);
+    session.press(Key::O);
+    assert_eq!(session.line(), "scene.toml: the camera is written");
+    let moved = rendered(&scene, "exact29", [120, 90]);
+    assert_ne!(moved, still);
+    session.wait_for(&moved);
+    // As many samples as the scene says, and not one less.
+    let fewer = fs::read_to_string(&scene).unwrap().replace("samples = 10", "samples = 8");
+    fs::write(&scene, fewer).unwrap();
+    assert_ne!(rendered(&scene, "exact29", [120, 90]), moved);
+}
+
+#[test]
 fn one_moves_by_keys_and_mouse_and_the_camera_goes_to_the_scene() {
     let Some(display) = Display::start() else { return };
     let folder = folder();
