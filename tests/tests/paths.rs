@@ -139,8 +139,7 @@ fn a_tilted_plane_sees_its_part_of_the_sky() {
             model.render.size = size;
             let own = blob(engine, &model);
             let stage = engine.stage(own.bytes()).expect("a blob just made");
-            let total: f64 =
-                sums(stage.as_ref(), size, samples).iter().map(|sum| f64::from(sum[1]) / 65_536.0).sum();
+            let total: f64 = sums(stage.as_ref(), size, samples).iter().map(|sum| f64::from(sum[1]) / 65_536.0).sum();
             let count = f64::from(size[0] * size[1]) * f64::from(samples);
             // A sky of (1 + y) / 2 over a hemisphere with the cosine's weight: (1 + 2/3 ny) / 2, of variance at most 1/4 (1/18 + 1/4).
             let (found, meant) = (total / count, (1.0 + 2.0 / 3.0 * cosine) / 2.0);

@@ -57,8 +57,9 @@ fn with(needs: &[Need]) -> Needs {
 /// What is looked at: nothing, one thing each, and all of it.
 fn profiles() -> [(&'static str, Needs); 14] {
     use Need::{
-        Bilinear, BlinnPhong, Bounces, Checker, DirectionalLight, Falloff, Gray8, Linear, Orthographic, Paths, PointLight,
-        Reflection, Refraction, Rgb888, Roughness, Schlick, Shadows, Sky, SmoothNormals, Spheres, Srgb, Supersampling, Texture,
+        Bilinear, BlinnPhong, Bounces, Checker, DirectionalLight, Falloff, Gray8, Linear, Orthographic, Paths,
+        PointLight, Reflection, Refraction, Rgb888, Roughness, Schlick, Shadows, Sky, SmoothNormals, Spheres, Srgb,
+        Supersampling, Texture,
     };
     let other_output = SMALLEST.without(Linear).without(Rgb888).with(Srgb, true).with(Gray8, true);
     [

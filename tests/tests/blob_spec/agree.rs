@@ -88,7 +88,9 @@ fn header(blob: &Blob, model: &Model) -> Checked {
         Format::Gray8 => 2,
     };
     let parallel = matches!(model.camera.projection, Projection::Orthographic { .. });
-    let pixels = u64::from(parallel) << 19 | u64::from(model.render.samples > 1 && !model.render.paths) << 20 | 1 << (25 + format);
+    let pixels = u64::from(parallel) << 19
+        | u64::from(model.render.samples > 1 && !model.render.paths) << 20
+        | 1 << (25 + format);
     let (has, shared) = (!blob.triangles.is_empty(), header.needs >> 31 & 1 == 1);
     let bits = |count: usize| count.next_power_of_two().ilog2();
     // The largest material has all its bits set.

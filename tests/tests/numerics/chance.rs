@@ -12,9 +12,7 @@ const SIGMAS: f64 = 6.0;
 /// 64 x 64 pixels with 16 samples of 8 surfaces each.
 fn samples() -> impl Iterator<Item = (Sample, u32)> {
     let pixels = (0..64u16).flat_map(|y| (0..64u16).map(move |x| [x, y]));
-    pixels.flat_map(|pixel| {
-        (0..16).flat_map(move |number| (0..8).map(move |event| (Sample { pixel, number }, event)))
-    })
+    pixels.flat_map(|pixel| (0..16).flat_map(move |number| (0..8).map(move |event| (Sample { pixel, number }, event))))
 }
 
 /// How many standard deviations so many of `of` are from a half.
