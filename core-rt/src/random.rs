@@ -1,7 +1,8 @@
 //! Random numbers without a state: a hash of where in a picture they are for.
 //!
 //! pcg4d of M. Jarzynski and M. Olano, "Hash Functions for GPU Rendering", Journal of Computer Graphics Techniques 9(3), 2020:
-//! an affine map of each of four words, two rounds in which the product of two is added to another, and between them a shift.
+//! an affine map of each of four words, and two rounds in which the product of two is added to another and then the upper half of
+//! each to its lower one. (In the paper the second round ends before that, which leaves the lowest bits of neighbours alike.)
 //! Products are of 32 bits, one instruction each on a Cortex-M0. No tile, thread or frame is among the words, so that a picture
 //! depends on none of them.
 
@@ -25,17 +26,16 @@ impl Sample {
 
 /// The hash. A bijection of 2^128 states.
 fn pcg4d(words: [u32; 4]) -> [u32; 4] {
-    let mixed = round(words.map(|word| word.wrapping_mul(1_664_525).wrapping_add(1_013_904_223)));
-    round(mixed.map(|word| word ^ (word >> 16)))
+    round(round(words.map(|word| word.wrapping_mul(1_664_525).wrapping_add(1_013_904_223))))
 }
 
-/// To each word the product of two others is added, one after the other.
+/// To each word the product of two others is added, one after the other; then halves are.
 fn round([mut x, mut y, mut z, mut w]: [u32; 4]) -> [u32; 4] {
     x = x.wrapping_add(y.wrapping_mul(w));
     y = y.wrapping_add(z.wrapping_mul(x));
     z = z.wrapping_add(x.wrapping_mul(y));
     w = w.wrapping_add(y.wrapping_mul(z));
-    [x, y, z, w]
+    [x, y, z, w].map(|word| word ^ (word >> 16))
 }
 
 /// A whole number from 0 to below `end`, which is at most 2^18, from 28 bits of a random number: each is as likely as any other

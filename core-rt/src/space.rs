@@ -51,12 +51,6 @@ pub(crate) fn fresnel_q16(cosine_q16: u32, r0_q16: u32) -> u32 {
     r0_q16 + product((1 << 16) - r0_q16, fifth_q15)
 }
 
-/// A share of 65535ths in Q15, rounded down; 65535 is 1.
-#[inline]
-pub(crate) fn share_q15(share: u16) -> u32 {
-    (u32::from(share) + u32::from(share >> 15)) >> 1
-}
-
 /// Formats and operations for shading. Implemented by zero-sized types.
 pub trait Space: Copy + Debug + Default + Send + Sync + 'static {
     /// A point on a surface or a light, with a few bits below the grid.

@@ -102,7 +102,7 @@ fn without_lights_there_are_no_shadows() {
 const KNOWN: [(&str, Option<Part>); 6] = [
     ("::leaf_in::", Some(Part::Traversal)),
     ("core_rt::exact::triangle::undecided", Some(Part::Intersection)),
-    ("core_rt::whitted::shares", Some(Part::Shading)),
+    ("core_rt::onward::shares", Some(Part::Shading)),
     ("core_rt::camera::sum_2x", Some(Part::Rays)),
     ("intray_shadow", Some(Part::Marks)),
     ("memcpy", None),

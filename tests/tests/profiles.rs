@@ -44,7 +44,7 @@ macro_rules! needs {
         }
     };
 }
-needs!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31 32 33 34);
+needs!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31 32 33 34 35 36);
 
 /// Under how many profiles each bit's absence was no hindrance, over all scenes.
 fn check<K: Kernel>() {
@@ -52,7 +52,8 @@ fn check<K: Kernel>() {
     let (mut tried, mut shared) = ([0; BITS.len()], 0);
     let of_cases = cases::all().into_iter().filter(|case| matches!(case.name, "ior-10" | "hall-of-mirrors"));
     let of_cases = of_cases.map(|case| (case.name, (case.subject)().model));
-    for (name, mut model) in scenes::all().into_iter().chain(of_cases) {
+    let by_chance = scenes::pixels().into_iter().filter(|(name, _)| matches!(*name, "paths" | "rough"));
+    for (name, mut model) in scenes::all().into_iter().chain(by_chance).chain(of_cases) {
         model.render.size = [64, 48];
         let stored = |prefer| prepare::<K>(&model, &Options { prefer, ..Options::default() }).expect("it fits").blob;
         let (blob, small) = (stored(Prefer::Speed), stored(Prefer::Size));

@@ -7,7 +7,7 @@ use core::num::NonZeroU32;
 use fixed::types::{I2F14, U16F16};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-use super::{Space, faded, fresnel_q16, is_unit_q30, raised_q31, share_q15};
+use super::{Space, faded, fresnel_q16, is_unit_q30, raised_q31};
 use crate::colour::{Radiance, Rgb16};
 use crate::num::{
     BitLength, Triple, bits, dot, inverse_sqrt_u32, on_circle_q15, power, reciprocal, round_shift, sqrt_u32, sub,
@@ -208,9 +208,9 @@ impl Space for Grid14 {
         [x, y, narrow(round_shift(up_q16 as i32 - (1 << 16), 2))]
     }
 
-    /// Each product is at most 2^29.
+    /// The share is rounded down to Q15, in which 65535 is 1; each product is at most 2^29.
     fn strewn(unit: Self::Unit, by: Self::Unit, share: u16) -> Option<Self::Unit> {
-        let share_q15 = share_q15(share) as i32;
+        let share_q15 = (i32::from(share) + i32::from(share >> 15)) >> 1;
         let sum = |a: I2F14, b: I2F14| (bits_of(a) << 15) + bits_of(b) * share_q15;
         normalise([sum(unit[0], by[0]), sum(unit[1], by[1]), sum(unit[2], by[2])])
     }

@@ -14,7 +14,7 @@ use fixed::types::U16F16;
 use fixed::types::extra::{U30, U31};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-use super::{Space, faded, is_unit_q30, raised_q31, share_q15};
+use super::{Space, faded, is_unit_q30, raised_q31};
 use crate::colour::{Radiance, Rgb16};
 use crate::num::{Triple, bits, dot, inverse_sqrt_u64, on_circle_q30, round_shift, sqrt_u64, sub};
 use crate::record::{Checker, Reach};
@@ -207,8 +207,9 @@ impl<F: Fraction> Space for Grid29With<F> {
     }
 
     fn strewn(unit: Self::Unit, by: Self::Unit, share: u16) -> Option<Self::Unit> {
-        let (unit, by, share_q15) = (wide(unit), wide(by), i64::from(share_q15(share)));
-        let sum = |a: i64, b: i64| (a << 15) + b * share_q15;
+        // A 65535th is 65537 of 2^32 - 1. Each product is at most 2^61.
+        let (unit, by, share_q30) = (wide(unit), wide(by), (i64::from(share) * 65_537 + 2) >> 2);
+        let sum = |a: i64, b: i64| (a << 30) + b * share_q30;
         normalise([sum(unit[0], by[0]), sum(unit[1], by[1]), sum(unit[2], by[2])])
     }
 

@@ -121,13 +121,19 @@ fn broken_shading<K: Kernel>() {
                 "a roughness that is not declared",
                 |d| {
                     d.header.needs = d.header.needs.with(Need::Reflection, true).with(Need::Bounces, true);
-                    (shiny(d).reflected, shiny(d).roughness) = ([1; 3], 1);
+                    let lustre = shiny(d);
+                    (lustre.reflected, lustre.roughness) = ([1; 3], 1);
                 },
                 BlobError::Undeclared(Need::Roughness),
             ),
             (
                 "paths in ambient light",
-                |d| d.header.needs = d.header.needs.with(Need::Paths, true).with(Need::Ambient, true),
+                |d| {
+                    d.header.needs = d.header.needs.with(Need::Paths, true).with(Need::Ambient, true);
+                    d.header.ambient.mantissa = [0, 1, 0];
+                    // Corners of pixels are in range where all are one point.
+                    (d.header.camera.right, d.header.camera.down) = ([0; 3], [0; 3]);
+                },
                 BlobError::Shading,
             ),
             ("a law of highlights from the future", |d| shiny(d).flags = 8, BlobError::Shading),
