@@ -133,17 +133,22 @@ impl SceneArguments {
         if self.leaf.is_some()
             || self.prefer.is_some()
             || self.grid_bits.is_some()
-            || self.samples.is_some()
             || self.paths.is_some()
             || self.format.is_some()
             || self.knobs.any()
         {
             return Err(Failure::input(
-                "--leaf, --prefer, --grid-bits, --samples, --paths, --format and the knobs of arithmetic are other kernels'; \
-                 planes12 has none of them",
+                "--leaf, --prefer, --grid-bits, --paths, --format and the knobs of arithmetic are other kernels'; planes12 has \
+                 none of them",
             ));
         }
-        self.model()
+        let model = self.model()?;
+        if self.samples.is_some() && model.materials.iter().all(|material| material.roughness == 0.0) {
+            return Err(Failure::input(
+                "planes12 has several samples of rough mirrors alone, and no material has a roughness; leave out --samples",
+            ));
+        }
+        Ok(model)
     }
 
     /// Whether the scene is not a blob, by its name.

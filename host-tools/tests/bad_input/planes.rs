@@ -44,7 +44,11 @@ fn scenes_that_it_does_not_know() {
     );
     spheres.refuses(
         "render scene.toml --kernel planes12 --samples 4 -o out.png",
-        "error: --leaf, --prefer, --grid-bits, --samples, --format and the knobs of arithmetic are other kernels'; planes12 has \
+        "error: planes12 has several samples of rough mirrors alone, and no material has a roughness; leave out --samples\n",
+    );
+    spheres.refuses(
+        "render scene.toml --kernel planes12 --format rgb565 -o out.png",
+        "error: --leaf, --prefer, --grid-bits, --paths, --format and the knobs of arithmetic are other kernels'; planes12 has \
          none of them\n",
     );
 }
