@@ -5,8 +5,9 @@ use core_rt::exact::Exact14;
 use core_rt::format::Format;
 use core_rt::kernel::Kernel;
 use core_rt::render::Tile;
-use planes_rt::colour::encode;
+use planes_rt::colour::{Light, encode};
 use planes_rt::lanes;
+use planes_rt::pixel;
 use planes_rt::scene::Scene;
 use zerocopy::IntoBytes;
 
@@ -56,7 +57,11 @@ fn drawn(scene: &Scene<'_>, transfer: Transfer, mut wire: Wire, board: &Board) -
     let mut bytes = [0; BYTES];
     for tile in Tile::of([width, height], [TILE; 2]) {
         intray_window_begin();
-        draw(scene, transfer, tile, &mut bytes);
+        if scene.is_rough() {
+            draw_rough(scene, transfer, tile, &mut bytes);
+        } else {
+            draw(scene, transfer, tile, &mut bytes);
+        }
         intray_window_end();
         let head = TileHead { x: tile.x, y: tile.y, width: tile.width, height: tile.height };
         let pixels = bytes.get(..3 * tile.pixels()).unwrap_or_default();
@@ -72,11 +77,23 @@ fn drawn(scene: &Scene<'_>, transfer: Transfer, mut wire: Wire, board: &Board) -
 /// Draws one tile. Lanes beyond it are traced for nothing.
 #[inline(never)]
 fn draw(scene: &Scene<'_>, transfer: Transfer, tile: Tile, bytes: &mut [u8; BYTES]) {
+    fill(transfer, tile, bytes, |pixels| lanes::trace(scene, pixels));
+}
+
+/// The same where there are rough mirrors, pixel by pixel: lanes have the same light, and a second copy of theirs would cost the
+/// first one a tenth of its speed.
+#[inline(never)]
+fn draw_rough(scene: &Scene<'_>, transfer: Transfer, tile: Tile, bytes: &mut [u8; BYTES]) {
+    fill(transfer, tile, bytes, |pixels| pixels.map(|pixel| pixel::trace(scene, pixel)));
+}
+
+#[inline(always)]
+fn fill(transfer: Transfer, tile: Tile, bytes: &mut [u8; BYTES], trace: impl Fn(&[[u16; 2]; LANES]) -> [Light; LANES]) {
     for top in (0..tile.height).step_by(DOWN.into()) {
         for left in (0..tile.width).step_by(ACROSS.into()) {
             let places: [[u16; 2]; LANES] =
                 core::array::from_fn(|lane| [left + lane as u16 % ACROSS, top + lane as u16 / ACROSS]);
-            let lights = lanes::trace(scene, &places.map(|[x, y]| [tile.x + x, tile.y + y]));
+            let lights = trace(&places.map(|[x, y]| [tile.x + x, tile.y + y]));
             for ([x, y], light) in places.into_iter().zip(lights) {
                 let first = 3 * (usize::from(y) * usize::from(tile.width) + usize::from(x));
                 if x < tile.width

@@ -76,11 +76,13 @@ pub fn lookups(scene: &Scene<'_>) -> Vec<u64> {
     let [width, height] = scene.settings().size;
     let mut counts = vec![0; scene.settings().generations.into()];
     for pixel in (0..height).flat_map(|y| (0..width).map(move |x| [x, y])) {
-        let mut lookups = 1;
-        pixel::trace_telling(scene, pixel, |met| {
-            lookups += usize::from(scene.spheres()[met.sphere].surface.mirror != [0; 3]);
-        });
-        counts.iter_mut().take(lookups).for_each(|count| *count += 1);
+        for sample in 0..scene.settings().samples {
+            let mut lookups = 1;
+            pixel::trace_telling(scene, pixel, sample, |met| {
+                lookups += usize::from(scene.spheres()[met.sphere].surface.mirror != [0; 3]);
+            });
+            counts.iter_mut().take(lookups).for_each(|count| *count += 1);
+        }
     }
     counts
 }

@@ -1,6 +1,6 @@
 //! A scene as bytes, read in place: a blob of the kernel [`KERNEL`].
 //!
-//! `core_rt`'s prefix; a [`Header`]; the spheres, 26 bytes each; zeros up to a multiple of 8; four bytes of zero and the CRC-32 of all
+//! `core_rt`'s prefix; a [`Header`]; the spheres, 28 bytes each; zeros up to a multiple of 8; four bytes of zero and the CRC-32 of all
 //! that stands before it. All numbers are little-endian, and so is every machine that reads them in place.
 
 use core::fmt::{Display, Formatter};
@@ -41,12 +41,14 @@ pub struct Header {
     pub background: [u16; 3],
     /// How many spheres there are.
     pub spheres: u16,
+    /// Samples of a pixel.
+    pub samples: u16,
     /// 1 where the outline is the literal one, else 0.
     pub is_literal: u8,
     /// 1 where the picture's bytes are in proportion to light, 0 for sRGB.
     pub is_linear: u8,
     /// Zero.
-    pub reserved: [u8; 6],
+    pub reserved: [u8; 4],
 }
 
 /// Why bytes are no scene.
@@ -82,7 +84,7 @@ impl Header {
     /// For a scene whose components lie at `middle + component / scale`, by the bits of these f64.
     #[must_use]
     pub fn new(scene: &Scene<'_>, transfer: Transfer, middle_bits: [u64; 3], scale_bits: u64) -> Self {
-        let Settings { widths, size, generations, outline } = scene.settings;
+        let Settings { widths, size, generations, outline, samples } = scene.settings;
         let bits = [widths.coordinate(), widths.product(), widths.determinant(), widths.t_fraction()];
         Self {
             middle_bits,
@@ -95,9 +97,10 @@ impl Header {
             background: scene.background,
             // There are no more numbers.
             spheres: scene.spheres.len() as u16,
+            samples,
             is_literal: (outline == Outline::Literal).into(),
             is_linear: (transfer == Transfer::Linear).into(),
-            reserved: [0; 6],
+            reserved: [0; 4],
         }
     }
 
@@ -139,7 +142,7 @@ pub fn read(blob: &[u8]) -> Result<(Scene<'_>, Transfer), ReadError> {
     }
     let body = blob.get(PREFIX_SIZE..).ok_or(BlobError::Header)?;
     let (header, rest) = Header::ref_from_prefix(body).map_err(|_| BlobError::Header)?;
-    let flags_are_known = header.is_literal <= 1 && header.is_linear <= 1 && header.reserved == [0; 6];
+    let flags_are_known = header.is_literal <= 1 && header.is_linear <= 1 && header.reserved == [0; 4];
     if header.prefix() != prefix || !flags_are_known {
         return Err(BlobError::Header.into());
     }
@@ -155,6 +158,7 @@ pub fn read(blob: &[u8]) -> Result<(Scene<'_>, Transfer), ReadError> {
         size: header.size,
         generations: header.generations,
         outline: if header.is_literal == 1 { Outline::Literal } else { Outline::Nearest },
+        samples: header.samples,
     };
     let scene = Scene::new_checked(spheres, header.light, header.background, header.camera, settings);
     let transfer = if header.is_linear == 1 { Transfer::Linear } else { Transfer::Srgb };

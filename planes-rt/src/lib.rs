@@ -12,12 +12,14 @@
 //! # Tracing
 //! `step` has what a processor does with one ray and one sphere. [`pixel`] does it for one pixel, and skips what is not
 //! needed; [`lanes`] does it for a tile of pixels at once, and skips what none of them needs. The pictures are the same.
+//! Where there are rough mirrors, several samples of a pixel are averaged, and [`jitter`] strews what is reflected.
 #![no_std]
 #![forbid(unsafe_code)]
 
 pub mod blob;
 pub mod camera;
 pub mod colour;
+pub mod jitter;
 pub mod lanes;
 pub mod pixel;
 pub mod root;

@@ -1,6 +1,7 @@
 //! One pixel: what is not needed is skipped.
 
-use crate::colour::{Cosine, LIGHT_MAX, Light, SHARE_ONE, share_of};
+use crate::colour::{Cosine, LIGHT_MAX, Light, SHARE_ONE, averaged, share_of};
+use crate::jitter::strewn;
 use crate::scene::{Outline, Scene, Sphere};
 use crate::step::{coefficients, determinant, difference, held, numerator, parameter, point, product, reflection};
 
@@ -21,18 +22,19 @@ pub struct Met {
 #[inline(always)]
 #[must_use]
 pub fn trace(scene: &Scene<'_>, pixel: [u16; 2]) -> Light {
-    trace_telling(scene, pixel, |_| ())
+    averaged(scene.settings.samples, |sample| trace_telling(scene, pixel, sample, |_| ()))
 }
 
-/// The same, telling of each sphere that is met. The last direction is told although no ray may take it.
+/// The light of one of its samples, telling of each sphere that is met. The last direction is told although no ray may take
+/// it.
 #[inline(always)]
-pub fn trace_telling(scene: &Scene<'_>, pixel: [u16; 2], mut tell: impl FnMut(Met)) -> Light {
+pub fn trace_telling(scene: &Scene<'_>, pixel: [u16; 2], sample: u16, mut tell: impl FnMut(Met)) -> Light {
     let widths = scene.settings.widths;
     let (mut origin, mut direction) = scene.ray(pixel);
     let mut share = [i32::from(SHARE_ONE); 3];
     // At most white in each of less than 2^16 generations.
     let mut light = [0; 3];
-    for _ in 0..scene.settings.generations {
+    for generation in 0..scene.settings.generations {
         let Some((number, sphere, t)) = meet(scene, origin, direction) else {
             for channel in 0..3 {
                 light[channel] += share_of(scene.background[channel].into(), share[channel]);
@@ -47,6 +49,10 @@ pub fn trace_telling(scene: &Scene<'_>, pixel: [u16; 2], mut tell: impl FnMut(Me
             share[channel] = share_of(share[channel], sphere.surface.mirror[channel].into());
         }
         direction = reflection(direction, normal, widths);
+        if sphere.surface.roughness > 0 {
+            let [x, y] = pixel;
+            direction = strewn(direction, normal, sphere.surface.roughness, [x, y, sample, generation], widths);
+        }
         tell(Met { sphere: number, t, point: origin, direction });
         if share == [0; 3] {
             break;

@@ -6,6 +6,7 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 use crate::camera::Camera;
 use crate::colour::{LIGHT_MAX, Light, Surface};
+use crate::jitter::SAMPLES_MAX;
 use crate::widths::Widths;
 
 /// A sphere, in components.
@@ -41,6 +42,8 @@ pub struct Settings {
     pub generations: u16,
     /// Where a pixel ends.
     pub outline: Outline,
+    /// Samples of a pixel, from 1, which differ by what rough mirrors do; a scene without any has one.
+    pub samples: u16,
 }
 
 /// A scene that was found to be within its words.
@@ -52,6 +55,8 @@ pub struct Scene<'a> {
     pub(crate) background: Light,
     pub(crate) camera: Camera,
     pub(crate) settings: Settings,
+    /// Whether anything strews what it reflects.
+    pub(crate) is_rough: bool,
 }
 
 /// Why a scene cannot be traced.
@@ -67,6 +72,8 @@ pub enum SceneError {
     Background,
     /// The picture has no pixels, or rays that exceed their words.
     Camera,
+    /// There are no samples, more than [`SAMPLES_MAX`], or several of a scene in which nothing is random.
+    Samples(u16),
 }
 
 impl Display for SceneError {
@@ -76,6 +83,9 @@ impl Display for SceneError {
             Self::Count(count) => write!(f, "{count} spheres; there are numbers for 32767"),
             Self::Light => f.write_str("the light's vector exceeds its words"),
             Self::Background => f.write_str("the background is brighter than white"),
+            Self::Samples(count) => {
+                write!(f, "{count} samples of a pixel; there are 1 to {SAMPLES_MAX}, and 1 where no mirror is rough")
+            }
             Self::Camera => f.write_str("the picture has no pixels, or its rays exceed their words"),
         }
     }
@@ -113,11 +123,21 @@ impl<'a> Scene<'a> {
         if background.iter().any(|&channel| channel > LIGHT_MAX) {
             return Err(SceneError::Background);
         }
+        let most = if spheres.iter().any(|sphere| sphere.surface.roughness > 0) { SAMPLES_MAX } else { 1 };
+        if !(1..=most).contains(&settings.samples) {
+            return Err(SceneError::Samples(settings.samples));
+        }
         let size = settings.size;
         if size.contains(&0) || !camera.origin.holds(size) || !camera.direction.holds(size) {
             return Err(SceneError::Camera);
         }
-        Ok(Self { spheres, light, background, camera, settings })
+        Ok(Self { spheres, light, background, camera, settings, is_rough: most > 1 })
+    }
+
+    /// Whether anything strews what it reflects.
+    #[must_use]
+    pub fn is_rough(&self) -> bool {
+        self.is_rough
     }
 
     /// How it is traced.

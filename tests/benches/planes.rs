@@ -22,7 +22,12 @@ fn spheres() -> Vec<Sphere> {
     let sphere = |i: i16| Sphere {
         centre: [i % 4 * 200 - 300, i / 4 * 200 - 300, i * 37 % 200 - 100],
         radius: 90,
-        surface: Surface { lit: [2000, 3000, 1000], own: [100; 3], mirror: [if i % 2 == 0 { 1200 } else { 400 }; 3] },
+        surface: Surface {
+            lit: [2000, 3000, 1000],
+            own: [100; 3],
+            mirror: [if i % 2 == 0 { 1200 } else { 400 }; 3],
+            roughness: 0,
+        },
     };
     (0..16).map(sphere).collect()
 }
@@ -36,7 +41,7 @@ fn main() {
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     for outline in [Outline::Nearest, Outline::Literal] {
-        let settings = Settings { widths: Widths::PIXEL_PLANES, size: SIZE, generations: 3, outline };
+        let settings = Settings { widths: Widths::PIXEL_PLANES, size: SIZE, generations: 3, outline, samples: 1 };
         let scene = Scene::new_checked(&spheres, [1000, 1400, 1000], [300, 400, 500], camera, settings);
         let scene = scene.expect("in range");
         let seconds = |way| {

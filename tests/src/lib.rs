@@ -5,6 +5,7 @@ pub mod balls;
 pub mod blobs;
 pub mod boards;
 pub mod chips;
+pub mod convergence;
 pub mod documents;
 pub mod fuzz;
 pub mod growth;

@@ -1,7 +1,7 @@
 //! Measures what the 2009 report claims, and writes docs/STUDIES.md and its plots.
 //!
 //! `studies [--quick]`: quickly is smaller, and goes to out/studies, so that the document is always of a whole run.
-//! `studies --planes` writes docs/PLANES.md, on the tracer of 1994, instead.
+//! `studies --planes` writes docs/PLANES.md, on the tracer of 1994, instead, and `studies --paths` docs/PATHS.md, on paths.
 
 mod study;
 
@@ -11,6 +11,7 @@ use std::time::Instant;
 
 use host_tools::files;
 use study::machine::Machine;
+use study::paths::{Extent, Paths};
 use study::planes::{Planes, SIZE as PLANES_SIZE};
 use study::{ALL, Page, Setup, document, scenes};
 
@@ -20,8 +21,9 @@ fn main() -> ExitCode {
         [] => run(false),
         ["--quick"] => run(true),
         ["--planes"] => planes(),
+        ["--paths"] => paths(),
         _ => {
-            eprintln!("usage: studies [--quick | --planes]");
+            eprintln!("usage: studies [--quick | --planes | --paths]");
             return ExitCode::from(2);
         }
     };
@@ -79,4 +81,17 @@ fn planes() -> Result<(), String> {
         picture.write_png(&path).map_err(|error| error.to_string())?;
     }
     Ok(())
+}
+
+/// Paths, by every kernel: some minutes, most of them the reference's.
+fn paths() -> Result<(), String> {
+    let begin = Instant::now();
+    let figures =
+        Paths::measure(Extent::whole(), &|what| eprintln!("{:>4.0} s  {what}", begin.elapsed().as_secs_f64()));
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
+    let write = |name: &str, text: &str| {
+        files::write_atomically(&root.join(name), text.as_bytes()).map_err(|error| error.to_string())
+    };
+    write("PATHS.md", &figures.document())?;
+    write("studies/paths.svg", &figures.plot())
 }

@@ -17,6 +17,7 @@ use study::degenerates::{self, Degenerates};
 use study::edge_shift::{self, EdgeShift, Thinnest};
 use study::leaf_threshold::{LeafThreshold, Row};
 use study::machine::Machine;
+use study::paths::{Extent, Paths};
 use study::planes::{self, Planes};
 use study::scenes::{self, Subject};
 use study::seams::{self, Seams};
@@ -304,4 +305,39 @@ fn the_document_on_the_tracer_of_1994_is_of_the_tracer_as_it_is() {
     let mut wrong = figures;
     wrong.rows.iter_mut().for_each(|row| (row.wrong, row.up_to_2) = (row.rays, 0));
     assert!(wrong.verdicts().iter().all(|verdict| !verdict.holds));
+}
+
+#[test]
+fn the_fall_of_noise_is_told_from_what_does_not_fall() {
+    let extent = Extent { size: [6, 4], counts: vec![1, 4, 16], truth_samples: 64 };
+    let mut figures = Paths::measure(extent, &|_| ());
+    let text = figures.document();
+    assert!(tables_are_whole(&text) && text.contains("| `exact29` | "), "{text}");
+    assert!(figures.plot().contains("exact29"));
+    for row in &mut figures.rows {
+        row.errors = vec![(1, 0.4), (4, 0.2), (16, 0.1)];
+        assert!((row.exponent() + 0.5).abs() < 1e-12 && row.own() < 1e-8);
+    }
+    assert!(figures.verdict().holds);
+    // An error of the kernel's own, and noise that falls too slowly.
+    figures.rows[0].errors = [1.0, 4.0, 16.0].map(|n| (n as u32, libm::sqrt(0.01 / n + 1e-6))).to_vec();
+    assert!((figures.rows[0].own() - 1e-3).abs() < 1e-9 && figures.verdict().holds);
+    figures.rows[0].errors = vec![(1, 0.4), (4, 0.26), (16, 0.17)];
+    assert!(!figures.verdict().holds);
+}
+
+#[test]
+fn the_document_on_paths_is_of_this_measurement() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
+    let text = std::fs::read_to_string(root.join("PATHS.md")).expect("the document");
+    let renew = "renew it with `cargo xtask paths`";
+    // To measure anew takes minutes; what it says of how is as it is now.
+    let ours = Paths { rows: Vec::new(), noise: 0.0, extent: Extent::whole() }.document();
+    let before_figures = |text: &str| text.split_once("Its own noise").map(|(before, _)| before.to_owned());
+    assert_eq!(before_figures(&text), before_figures(&ours), "{renew}");
+    assert!(tables_are_whole(&text) && text.contains("**Holds**: the error falls"), "{renew}");
+    for engine in host_tools::engine::ENGINES {
+        assert!(text.contains(&format!("| `{}` | ", engine.name())), "{renew}");
+    }
+    assert!(root.join("studies/paths.svg").is_file(), "{renew}");
 }

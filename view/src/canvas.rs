@@ -96,16 +96,23 @@ impl Canvas {
 
     /// Puts a tile of the full picture to its place. One that lies outside is left out.
     pub fn tile(&mut self, tile: Tile, pixels: &[[u8; 3]]) {
+        if self.show(tile, pixels) {
+            self.missing = self.missing.saturating_sub(pixels.len() as u64);
+        }
+    }
+
+    /// Puts a tile to its place that is not yet as it is to be; false where it lies outside.
+    pub fn show(&mut self, tile: Tile, pixels: &[[u8; 3]]) -> bool {
         let [width, height] = self.size();
         let [right, bottom] = [u32::from(tile.x) + u32::from(tile.width), u32::from(tile.y) + u32::from(tile.height)];
         if right > width || bottom > height || tile.width == 0 {
-            return;
+            return false;
         }
         for (row, source) in pixels.chunks_exact(tile.width.into()).enumerate() {
             let start = (usize::from(tile.y) + row) * width as usize + usize::from(tile.x);
             self.picture.pixels_mut()[start..start + source.len()].copy_from_slice(source);
         }
-        self.missing = self.missing.saturating_sub(pixels.len() as u64);
+        true
     }
 }
 

@@ -6,14 +6,16 @@ use std::time::Duration;
 use firmware_rt::board::{Board, HIFIVE1, MICROBIT, PICO, ROOMY};
 use firmware_rt::build::Traits;
 use host_tools::emulate::counter::Counter;
+use host_tools::emulate::elf::Elf;
 use host_tools::emulate::firmware::{self, Wanted};
 use host_tools::emulate::machine::Machine;
-use host_tools::emulate::{EmulateError, Run};
-use host_tools::engine::ENGINES;
+use host_tools::emulate::{EmulateError, Run, planes};
+use host_tools::engine::{Engine, PLANES12};
 use host_tools::picture::Picture;
 use host_tools::prepare::Options;
 
 use crate::desk::Desk;
+use crate::kernels::KERNELS;
 use crate::painter::{Scene, View};
 
 /// How long an emulator may take.
@@ -82,29 +84,33 @@ pub fn work(scene: &Scene, desk: &Desk<Job>, newest: &AtomicU64, tell: &dyn Fn(u
 /// Why that cannot be said, for a person.
 pub fn effort(scene: &Scene, job: &Job) -> Result<Effort, String> {
     let target = &TARGETS[job.target];
-    let engine = ENGINES[job.view.kernel];
+    let engine = KERNELS[job.view.kernel];
     let prepared = engine.prepare(&job.view.of(scene), &Options::default()).map_err(|error| error.to_string())?;
     let blob = prepared.blob.bytes();
-    let room = target.board.blob(engine.id()).length;
+    let room = planes::place(target.board, engine.id()).length;
     let blob_bytes = blob.len() as u64;
     if blob_bytes > u64::from(room) {
         return Err(format!("the scene has {blob_bytes} bytes, and {} has room for {room}", target.board.name));
     }
     let short = |error: EmulateError| error.to_string().lines().next().unwrap_or_default().to_owned();
-    let (header, _) = engine.inspect(blob).map_err(|error| error.to_string())?;
     let (last, others) = target.emulated.split_last().ok_or("it cannot be emulated")?;
-    let fits = |board: &&&'static Board| blob_bytes <= u64::from(board.blob(engine.id()).length);
+    let fits = |board: &&&'static Board| blob_bytes <= u64::from(planes::place(board, engine.id()).length);
     let board = others.iter().find(fits).unwrap_or(last);
-    firmware::check(board, &Traits::new(engine.id(), &header)).map_err(short)?;
-    run(target, board, blob, &job.picture).map_err(short)
+    run(target, board, engine, blob, &job.picture).map_err(short)
 }
 
 /// Runs the firmware, and counts.
-fn run(target: &Target, board: &'static Board, blob: &[u8], shown: &Picture) -> Result<Effort, EmulateError> {
+fn run(
+    target: &Target,
+    board: &'static Board,
+    engine: &dyn Engine,
+    blob: &[u8],
+    shown: &Picture,
+) -> Result<Effort, EmulateError> {
+    let elf = elf(board, engine, blob)?;
     let machine = Machine::of(board)?;
     machine.version()?;
     let counter = Counter::provide(&machine).map_err(EmulateError::Counter)?;
-    let elf = Wanted { board, blob, hits: None, count: false }.provide()?;
     let run = Run { board, elf: &elf, blob: Some(blob), counter: Some(&counter), limit: LIMIT };
     let outcome = run.perform(&mut Vec::new())?;
     let instructions = outcome.counts.as_ref().map(|counts| counts.instructions);
@@ -118,4 +124,14 @@ fn run(target: &Target, board: &'static Board, blob: &[u8], shown: &Picture) -> 
     let seconds = cycles as f64 / (f64::from(target.clock_mhz) * 1e6);
     let is_same = outcome.picture == *shown;
     Ok(Effort { instructions, cycles, seconds, blob_bytes: blob.len() as u64, is_same })
+}
+
+/// The kernel's firmware for a board.
+fn elf(board: &'static Board, engine: &dyn Engine, blob: &[u8]) -> Result<Elf, EmulateError> {
+    if engine.id() == PLANES12.id() {
+        return planes::provide(board);
+    }
+    let (header, _) = engine.inspect(blob).map_err(|_| EmulateError::Damaged("the blob is not the kernel's"))?;
+    firmware::check(board, &Traits::new(engine.id(), &header))?;
+    Wanted { board, blob, hits: None, count: false }.provide()
 }

@@ -7,11 +7,11 @@ use std::sync::Arc;
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
 use host_tools::cli::{Failure, note, output, picture_size, warn};
-use host_tools::engine::ENGINES;
 use host_tools::import::{self, Imported};
 
 use crate::canvas::draft_size;
 use crate::chip::TARGETS;
+use crate::kernels::{KERNELS, place, refusal};
 use crate::measure::{self, Pilot, Report};
 use crate::painter::Scene;
 use crate::scene_file;
@@ -28,7 +28,7 @@ struct Arguments {
     scene: PathBuf,
 
     /// The arithmetic [default: exact29, on a chip exact14]
-    #[arg(long, value_parser = PossibleValuesParser::new(ENGINES.map(|engine| engine.name())))]
+    #[arg(long, value_parser = PossibleValuesParser::new(KERNELS.map(|engine| engine.name())))]
     kernel: Option<String>,
 
     /// The window's size in pixels
@@ -76,6 +76,9 @@ fn answer(arguments: &Arguments) -> Result<(), Failure> {
     let has_headlight = scene_file::has_headlight(path).map_err(Failure::input)?;
     let scene = Scene { model: Arc::new(model), has_headlight };
     let setup = setup(arguments);
+    if let Some(reason) = setup.kernels.into_iter().find_map(|kernel| refusal(kernel, &scene.model)) {
+        return Err(Failure::input(format!("{}: {reason}", path.display())));
+    }
     let threads = match arguments.threads {
         Some(threads) => threads.into(),
         None => std::thread::available_parallelism().map_or(1, usize::from),
@@ -102,12 +105,11 @@ fn answer(arguments: &Arguments) -> Result<(), Failure> {
 
 /// How one begins.
 fn setup(arguments: &Arguments) -> Setup {
-    let place = |name: &str| ENGINES.iter().position(|engine| engine.name() == name).unwrap_or_default();
-    let asked = arguments.kernel.as_deref().map(place);
+    let asked = arguments.kernel.as_deref().and_then(place);
     let board = arguments.board.as_deref();
     let board = board.and_then(|name| TARGETS.iter().position(|target| target.board.name == name));
     Setup {
-        kernels: [asked.unwrap_or_default(), asked.unwrap_or_else(|| place("exact14"))],
+        kernels: [asked.unwrap_or_default(), asked.or_else(|| place("exact14")).unwrap_or_default()],
         size: arguments.size,
         board: board.unwrap_or_default(),
         panel: arguments.panel,
@@ -119,7 +121,7 @@ fn setup(arguments: &Arguments) -> Setup {
 fn known(setup: &Setup, threads: usize) -> Report {
     let draft = if setup.is_chip { setup.panel } else { draft_size(setup.size) };
     Report {
-        kernel: ENGINES[setup.kernels[usize::from(setup.is_chip)]].name(),
+        kernel: KERNELS[setup.kernels[usize::from(setup.is_chip)]].name(),
         width: setup.size[0],
         height: setup.size[1],
         draft_width: draft[0],

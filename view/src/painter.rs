@@ -5,7 +5,6 @@ use std::time::Instant;
 
 use core_rt::render::Tile;
 use core_rt::stats::Counts;
-use host_tools::engine::ENGINES;
 use host_tools::model::{Camera, Format, Light, LightKind, Model};
 use host_tools::picture::Picture;
 use rayon::ThreadPool;
@@ -13,7 +12,12 @@ use rayon::prelude::*;
 
 use crate::canvas;
 use crate::desk::Desk;
+use crate::film::{Film, passes};
+use crate::kernels::KERNELS;
 use crate::stock::Stock;
+
+/// Samples a pixel of a draft by paths: fewer are all noise, and more make it slow.
+pub const DRAFT_PATHS: u32 = 2;
 
 /// Tiles a thread between two looks at whether the picture is still wanted.
 const BATCH: usize = 4;
@@ -25,7 +29,7 @@ pub struct View {
     pub camera: Camera,
     /// Width and height, pixels.
     pub size: [u32; 2],
-    /// The kernel's place among [`ENGINES`].
+    /// The kernel's place among [`KERNELS`].
     pub kernel: usize,
     /// How pixels lie in memory, and so what colours there are.
     pub format: Format,
@@ -70,7 +74,7 @@ pub struct Wish {
     pub serial: u64,
     /// What it shows.
     pub view: View,
-    /// Of a draft, its size; it has one sample a pixel. `None` for the full picture.
+    /// Of a draft, its size; it has one sample a pixel, or [`DRAFT_PATHS`]. `None` for the full picture.
     pub draft: Option<[u32; 2]>,
 }
 
@@ -83,13 +87,18 @@ pub struct Took {
     pub rays: u64,
 }
 
+/// A tile and its pixels, row by row.
+pub type Painted = (Tile, Vec<[u8; 3]>);
+
 /// What has become of a wish.
 #[derive(Clone, Debug)]
 pub enum Drawn {
     /// A draft.
     Draft(Picture, Took),
     /// Tiles of the full picture.
-    Tiles(Vec<(Tile, Vec<[u8; 3]>)>),
+    Tiles(Vec<Painted>),
+    /// Tiles of the mean of so many samples a pixel, which are fewer than the full picture has.
+    Fewer(Vec<Painted>, u16),
     /// All tiles have been told of.
     Full(Took),
     /// Why there is no picture, for a person.
@@ -105,7 +114,8 @@ pub fn work(scene: &Scene, desk: &Desk<Wish>, pool: &ThreadPool, tell: &(dyn Fn(
         let tell = |drawn| tell(wish.serial, drawn);
         let done = match wish.draft {
             Some(size) => {
-                (model.render.size, model.render.samples) = (size, 1);
+                let few = if model.render.paths { DRAFT_PATHS.min(model.render.samples) } else { 1 };
+                (model.render.size, model.render.samples) = (size, few);
                 draft(&mut stock, &model, wish.view.kernel, pool).map(|(picture, took)| {
                     tell(Drawn::Draft(picture, took));
                 })
@@ -121,7 +131,7 @@ pub fn work(scene: &Scene, desk: &Desk<Wish>, pool: &ThreadPool, tell: &(dyn Fn(
 fn draft(stock: &mut Stock, model: &Model, kernel: usize, pool: &ThreadPool) -> Result<(Picture, Took), String> {
     let begin = Instant::now();
     let [width, height] = model.render.size;
-    stock.soon(ENGINES[kernel], model, |stage| {
+    stock.soon(KERNELS[kernel], model, |stage| {
         let tiles = canvas::order([width as u16, height as u16]);
         let drawn: Vec<_> = pool.install(|| tiles.par_iter().map(|&tile| stage.tile(tile)).collect());
         let mut whole = canvas::Canvas::new([width, height]);
@@ -144,9 +154,26 @@ fn full(
     tell: &dyn Fn(Drawn),
 ) -> Result<(), String> {
     let begin = Instant::now();
-    stock.exact(ENGINES[kernel], model, |stage| {
+    stock.exact(KERNELS[kernel], model, |stage| {
         let tiles = canvas::order(model.render.size.map(|side| side as u16));
         let mut counts = Counts::default();
+        if stage.follows_paths() {
+            let mut film = Film::new(stage, &tiles);
+            for samples in passes(model.render.samples as u16) {
+                let is_last = u32::from(samples.end) == model.render.samples;
+                for first in (0..tiles.len()).step_by(BATCH * pool.current_num_threads()) {
+                    if desk.is_waiting() {
+                        return;
+                    }
+                    let batch = first..tiles.len().min(first + BATCH * pool.current_num_threads());
+                    let (painted, more) = pool.install(|| film.add(batch, &samples));
+                    counts = counts.plus(more);
+                    tell(if is_last { Drawn::Tiles(painted) } else { Drawn::Fewer(painted, samples.end) });
+                }
+            }
+            tell(Drawn::Full(Took { seconds: begin.elapsed().as_secs_f64(), rays: counts.rays() }));
+            return;
+        }
         for batch in tiles.chunks(BATCH * pool.current_num_threads()) {
             if desk.is_waiting() {
                 return;

@@ -89,6 +89,7 @@ impl Staff {
                 let written = scene_file::write(&self.path, &self.home, &camera);
                 say(written.map(|()| format!("{}: the camera is written", self.path.display())));
             }
+            Order::Warn(reason) => say(Err(reason)),
             Order::Quit => return Then::End,
         }
         Then::GoOn

@@ -74,8 +74,9 @@ impl Stock {
         model: &Model,
         then: impl FnOnce(&dyn Stage) -> T,
     ) -> Result<T, String> {
-        let grid = engine.grid(model).map_err(|error| error.to_string())?;
-        if !self.fetch(engine, model, |stage| stage.grid() == grid) {
+        // Where there is none, making a blob says why.
+        let is_ready = engine.grid(model).is_ok_and(|grid| self.fetch(engine, model, |stage| stage.grid() == grid));
+        if !is_ready {
             self.add(engine, model)?;
         }
         self.first(then)

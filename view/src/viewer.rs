@@ -11,13 +11,13 @@ mod rate;
 mod tests;
 
 use host_tools::compare::Comparison;
-use host_tools::engine::ENGINES;
 use host_tools::model::{Format, Model};
 use host_tools::picture::{Picture, size_is_allowed};
 
 use crate::canvas::{Canvas, draft_size};
 use crate::chip::{Effort, TARGETS};
 use crate::frame::Frame;
+use crate::kernels::{KERNELS, refusal};
 use crate::keys::{Hold, Keys};
 use crate::overlay;
 use crate::painter::{Took, View, Wish};
@@ -55,6 +55,8 @@ struct Facts {
     comparison: Option<Box<Comparison>>,
     effort: Option<Result<Effort, String>>,
     failure: Option<String>,
+    /// Samples a pixel of a picture that is to have more.
+    samples: Option<u16>,
 }
 
 /// The state of everything.
@@ -63,6 +65,8 @@ pub struct Viewer {
     setup: Setup,
     /// The scene's own way of pixels.
     format: Format,
+    /// By the kernels' places: why one has nothing to do with the scene.
+    refusals: [Option<String>; KERNELS.len()],
     walk: Walk,
     keys: Keys,
     pad: Steer,
@@ -93,6 +97,7 @@ impl Viewer {
     pub fn new(model: &Model, setup: Setup) -> Self {
         Self {
             format: model.render.format,
+            refusals: std::array::from_fn(|kernel| refusal(kernel, model)),
             walk: Walk::new(model),
             keys: Keys::default(),
             pad: Steer::default(),
@@ -143,7 +148,7 @@ impl Viewer {
     /// The name of the kernel that draws.
     #[must_use]
     pub fn kernel(&self) -> &'static str {
-        ENGINES[self.setup.kernels[usize::from(self.setup.is_chip)]].name()
+        KERNELS[self.setup.kernels[usize::from(self.setup.is_chip)]].name()
     }
 
     /// A key went down or up.
@@ -185,7 +190,10 @@ impl Viewer {
         self.message = None;
         match action {
             Action::Kernel(kernel) => {
-                if kernel < ENGINES.len() {
+                if let Some(Some(reason)) = self.refusals.get(kernel) {
+                    return vec![Order::Warn(reason.clone())];
+                }
+                if kernel < KERNELS.len() {
                     self.setup.kernels[usize::from(self.setup.is_chip)] = kernel;
                 }
             }

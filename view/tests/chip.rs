@@ -3,13 +3,15 @@
 use std::sync::Arc;
 
 use firmware_rt::board::{HIFIVE1, MICROBIT};
-use host_tools::engine::{self, ENGINES};
-use host_tools::model::Format;
+use glam::DVec3;
+use host_tools::engine;
+use host_tools::model::{Format, Model, Sphere};
 use host_tools::picture::Picture;
 use host_tools::prepare::Options;
 use host_tools::render::TILE;
 use host_tools::{builtin, emulate, import};
 use view::chip::{Job, TARGETS, effort};
+use view::kernels::{self, KERNELS};
 use view::painter::{Scene, View};
 
 const SIZE: [u32; 2] = [24, 16];
@@ -17,11 +19,15 @@ const SIZE: [u32; 2] = [24, 16];
 /// The built-in scene, and a job to time it: on a board, by a kernel.
 fn job(board: &str, kernel: &str) -> (Scene, Job) {
     let model = import::load_from(&import::Embedded(builtin::FILES), "scene.toml").unwrap().model;
+    job_of(model, board, kernel)
+}
+
+fn job_of(model: Model, board: &str, kernel: &str) -> (Scene, Job) {
     let scene = Scene { model: Arc::new(model), has_headlight: false };
-    let place = ENGINES.iter().position(|engine| engine.name() == kernel).unwrap();
+    let place = kernels::place(kernel).unwrap();
     let view = View { camera: scene.model.camera, size: SIZE, kernel: place, format: Format::Rgb565 };
     let blob = engine::by_name(kernel).unwrap().prepare(&view.of(&scene), &Options::default()).unwrap().blob;
-    let picture = ENGINES[place].render(blob.bytes(), TILE, &|_| ()).unwrap().picture;
+    let picture = KERNELS[place].render(blob.bytes(), TILE, &|_| ()).unwrap().picture;
     let target = TARGETS.iter().position(|target| target.board.name == board).unwrap();
     (scene, Job { serial: 1, view, picture, target })
 }
@@ -55,9 +61,21 @@ fn instructions_are_counted_and_the_picture_is_the_same() {
 }
 
 #[test]
+fn the_tracer_of_spheres_is_counted_too() {
+    if let Err(error) = emulate::check(&MICROBIT) {
+        println!("skipped: {error}");
+        return;
+    }
+    let sphere = Sphere { centre: DVec3::ZERO, radius: 0.5, material: 0 };
+    let (scene, job) = job_of(Model { spheres: vec![sphere], ..Model::default() }, "microbit", "planes12");
+    let effort = effort(&scene, &job).unwrap();
+    assert!(effort.is_same && effort.instructions > 0, "{effort:?}");
+}
+
+#[test]
 fn why_there_is_no_time_is_said() {
     let (scene, job) = job("microbit", "f64");
-    let blob = ENGINES[job.view.kernel].prepare(&job.view.of(&scene), &Options::default()).unwrap().blob;
+    let blob = KERNELS[job.view.kernel].prepare(&job.view.of(&scene), &Options::default()).unwrap().blob;
     let expected = format!(
         "the scene has {} bytes, and microbit has room for {}",
         blob.bytes().len(),

@@ -105,7 +105,8 @@ impl SceneArguments {
     fn load_by(&self, engine: Option<&'static dyn Engine>) -> Result<(Scene, Option<Model>), Failure> {
         if self.is_planes() {
             return Err(Failure::input(
-                "planes12 is known to render, trace, emulate, report, stress and pixel-planes; choose another kernel",
+                "planes12, the tracer of 1994, draws spheres alone and has no blobs: render, trace, emulate, report, stress, \
+                 pixel-planes and view know it; choose another kernel, such as exact29, or exact14 for a chip",
             ));
         }
         if !self.is_model() {
@@ -132,17 +133,22 @@ impl SceneArguments {
         if self.leaf.is_some()
             || self.prefer.is_some()
             || self.grid_bits.is_some()
-            || self.samples.is_some()
             || self.paths.is_some()
             || self.format.is_some()
             || self.knobs.any()
         {
             return Err(Failure::input(
-                "--leaf, --prefer, --grid-bits, --samples, --paths, --format and the knobs of arithmetic are other kernels'; \
-                 planes12 has none of them",
+                "--leaf, --prefer, --grid-bits, --paths, --format and the knobs of arithmetic are other kernels'; planes12 has \
+                 none of them",
             ));
         }
-        self.model()
+        let model = self.model()?;
+        if self.samples.is_some() && model.materials.iter().all(|material| material.roughness == 0.0) {
+            return Err(Failure::input(
+                "planes12 has several samples of rough mirrors alone, and no material has a roughness; leave out --samples",
+            ));
+        }
+        Ok(model)
     }
 
     /// Whether the scene is not a blob, by its name.

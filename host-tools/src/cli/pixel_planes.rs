@@ -141,7 +141,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let widths =
         Widths::new(arguments.coordinate_bits, arguments.product_bits, arguments.determinant_bits, arguments.t_bits)?;
     let outline = if arguments.literal { Outline::Literal } else { Outline::Nearest };
-    let model = arguments.scene.model_for_planes()?;
+    let mut model = arguments.scene.model_for_planes()?;
+    if model.materials.iter().any(|material| material.roughness > 0.0) {
+        warn("the machine is the text's, whose mirrors are sharp; `intray render --kernel planes12` has rough ones");
+        model.materials.iter_mut().for_each(|material| material.roughness = 0.0);
+    }
     let named = |error: &dyn std::fmt::Display| Failure::input(format!("{}: {error}", arguments.scene.scene.display()));
     let options = Options { widths, outline, direction: arguments.direction };
     let planes = Planes::new(&model, &options).map_err(|error| named(&error))?;

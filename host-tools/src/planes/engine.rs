@@ -64,7 +64,7 @@ fn counts(scene: &Scene<'_>) -> Counts {
 /// What the rays of a pixel saw.
 fn seen(scene: &Scene<'_>, pixel: [u16; 2]) -> Seen {
     let (mut seen, mut place, mut ended) = (Seen::default(), Place::camera(0), false);
-    pixel::trace_telling(scene, pixel, |met| {
+    pixel::trace_telling(scene, pixel, 0, |met| {
         let sphere = &scene.spheres()[met.sphere];
         seen.surface(place, met.sphere as u32);
         let towards = |axis: usize| i64::from(met.point[axis] - sphere.centre[axis]) * i64::from(scene.light()[axis]);
@@ -134,7 +134,7 @@ impl Engine for Planes12 {
             ambient: black,
             transfer: Transfer::Srgb,
             format: Format::Rgb888,
-            samples: 1,
+            samples: settings.samples,
             max_depth: 0,
             root: 0,
             depth: 0,

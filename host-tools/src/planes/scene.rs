@@ -3,6 +3,7 @@
 use glam::DVec3;
 use planes_rt::camera::{Camera, FRACTION_BITS, Linear};
 use planes_rt::colour::{LIGHT_MAX, SHARE_ONE, Surface};
+use planes_rt::jitter::SAMPLES_MAX;
 use planes_rt::scene::{Outline, Scene, SceneError, Settings, Sphere};
 use planes_rt::widths::Widths;
 
@@ -110,11 +111,16 @@ impl Planes {
                 options.widths.determinant()
             ));
         }
+        let is_rough = spheres.iter().any(|sphere| sphere.surface.roughness > 0);
+        if model.render.paths {
+            warnings.push("planes12 traces no paths: it shows what lights send and mirrors".into());
+        }
         let settings = Settings {
             widths: options.widths,
             size: model.render.size.map(|side| side.min(u16::MAX.into()) as u16),
             generations: model.render.max_depth.saturating_add(1).min(u16::MAX.into()) as u16,
             outline: options.outline,
+            samples: if is_rough { model.render.samples.min(SAMPLES_MAX.into()) as u16 } else { 1 },
         };
         let planes = Self {
             spheres,
@@ -207,7 +213,9 @@ fn surface(material: &Material, model: &Model, radiance: DVec3) -> Result<Surfac
         MaterialKind::Lambert => material.specular.map_or(DVec3::ONE, |specular| specular.colour),
     };
     let albedo = material.colour * diffuse;
+    let [roughness, ..] = words(DVec3::splat(if reflected > 0.0 { material.roughness } else { 0.0 }), SHARE_ONE);
     Ok(Surface {
+        roughness,
         lit: words(albedo * radiance, LIGHT_MAX),
         own: words(material.emission + albedo * model.render.ambient, LIGHT_MAX),
         mirror: words(tint * reflected, SHARE_ONE),

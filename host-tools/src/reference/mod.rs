@@ -22,6 +22,8 @@
 //!   kr tint trace(reflected) + kt tint trace(refracted), with E the light's radiance by its falloff: no 1/pi.
 //!   Emission shows on both sides. [`encode`] clamps to [0, 1], applies the transfer and rounds to nearest.
 //! - After the scene's number of bounces a ray sees the background.
+//! - Mirrored rays of a rough surface are strewn about the mirrored direction. With `paths` a sample is one path that goes on
+//!   in one direction at random, diffusely too, and ambient light is left out, since paths gather it.
 //!
 //! Of a tree of rays, a branch whose share of the pixel is below 2^-20 in every channel is left out: a 4096th of a byte's
 //! step, so that what others leave out is measured.
@@ -46,7 +48,9 @@ mod bvh;
 mod camera;
 mod encode;
 mod optics;
+mod paths;
 mod pattern;
+mod random;
 mod ray;
 mod shade;
 mod shape;
@@ -58,7 +62,7 @@ mod texture;
 mod trace;
 mod triangle;
 
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 
 use core_rt::kernel::NONE;
 use glam::DVec3;
@@ -69,6 +73,7 @@ use crate::picture::Picture;
 use crate::witness::Seen;
 use bvh::Bvh;
 use camera::View;
+use random::Random;
 use ray::Ray;
 use shape::Shape;
 use trace::Bounce;
@@ -181,30 +186,56 @@ impl<'m> Reference<'m> {
     fn pixel_witness(&self, size: [u32; 2], x: u32, y: u32) -> (DVec3, Seen) {
         let samples = self.model.render.samples.max(1);
         let mut seen = Seen::default();
-        let sum: DVec3 = (0..)
-            .zip(pattern::points(samples))
-            .map(|(number, [right, down])| {
-                let (origin, direction) = self.camera_ray(size, f64::from(x) + right, f64::from(y) + down);
-                let colour = self.sample_witness(origin, direction, number, &mut seen).colour;
-                colour.clamp(DVec3::ZERO, DVec3::ONE)
-            })
-            .sum();
+        let places = pattern::points(samples).map(|place| (!self.model.render.paths).then_some(place));
+        let numbered = (0..).zip(places);
+        let sum: DVec3 = numbered.map(|(number, place)| self.clamped(size, [x, y], number, place, &mut seen)).sum();
         (sum / f64::from(samples), seen)
+    }
+
+    /// The sum of paths, by their numbers, of pixel `(x, y)` of a picture of `size`, linear RGB, each clamped to [0, 1]. Divided by
+    /// their number that of `0..n` is [`Reference::pixel_colour`] for a scene with paths and n samples.
+    pub fn path_sum(&self, size: [u32; 2], x: u32, y: u32, paths: Range<u32>) -> DVec3 {
+        let mut seen = Seen::default();
+        paths.map(|number| self.clamped(size, [x, y], number, None, &mut seen)).sum()
+    }
+
+    /// A sample of a pixel, at a place in it or at a random one, clamped to [0, 1].
+    fn clamped(
+        &self,
+        size: [u32; 2],
+        [x, y]: [u32; 2],
+        number: u32,
+        place: Option<[f64; 2]>,
+        seen: &mut Seen,
+    ) -> DVec3 {
+        let mut random = Random::new([x, y], number);
+        let [right, down] = place.unwrap_or_else(|| [random.unit(), random.unit()]);
+        let (origin, direction) = self.camera_ray(size, f64::from(x) + right, f64::from(y) + down);
+        let colour = self.sample_witness(origin, direction, number, &mut random, seen).colour;
+        colour.clamp(DVec3::ZERO, DVec3::ONE)
     }
 
     /// What a ray sees.
     pub fn sample(&self, origin: DVec3, direction: DVec3) -> Sample {
-        self.sample_witness(origin, direction, 0, &mut Seen::default())
+        self.sample_seen(origin, direction).0
     }
 
-    /// What a ray sees, and what the rays behind it saw.
+    /// What a ray sees, and what the rays behind it saw. What is random is so as in the first sample of the first pixel.
     pub fn sample_seen(&self, origin: DVec3, direction: DVec3) -> (Sample, Seen) {
         let mut seen = Seen::default();
-        (self.sample_witness(origin, direction, 0, &mut seen), seen)
+        let sample = self.sample_witness(origin, direction, 0, &mut Random::new([0, 0], 0), &mut seen);
+        (sample, seen)
     }
 
     /// What the camera ray of a pixel's sample sees, by the sample's number.
-    fn sample_witness(&self, origin: DVec3, direction: DVec3, number: u32, seen: &mut Seen) -> Sample {
+    fn sample_witness(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        number: u32,
+        random: &mut Random,
+        seen: &mut Seen,
+    ) -> Sample {
         let ray = Ray::new(origin, direction);
         let bounce = Bounce::first(number);
         let nearest = self.closest(&ray, Shape::intersect);
@@ -212,7 +243,11 @@ impl<'m> Reference<'m> {
         match nearest {
             Some((crossing, prim)) => {
                 let surface = self.surface(&ray, crossing, prim);
-                let (colour, lights) = self.shade(&surface, bounce, seen);
+                let (colour, lights) = if self.model.render.paths {
+                    self.path(surface, random, bounce.place, seen)
+                } else {
+                    self.shade(&surface, bounce, random, seen)
+                };
                 Sample {
                     colour,
                     hit: Some(Hit::new(&ray, crossing, prim)),
@@ -236,7 +271,7 @@ impl<'m> Reference<'m> {
     pub fn render(&self, size: [u32; 2], progress: &(dyn Fn(u64) + Sync)) -> (Vec<[u8; 3]>, Vec<Option<Hit>>) {
         self.each(size, progress, |x, y| {
             let centre = self.pixel(size, x, y);
-            let is_one = self.model.render.samples <= 1;
+            let is_one = self.model.render.samples <= 1 && !self.model.render.paths;
             let colour = if is_one { centre.colour } else { self.pixel_colour(size, x, y) };
             (encode(colour, self.model.render.transfer), centre.hit)
         })

@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::Reference;
 use super::optics::{fresnel, reflect, refract, schlick};
+use super::random::Random;
 use super::ray::Ray;
 use super::shape::Shape;
 use super::surface::Surface;
@@ -26,9 +27,20 @@ struct Weights {
     refracted: f64,
 }
 
+/// What a surface does with light, and where it sends what it does not keep.
+pub(super) struct Ways {
+    weights: Weights,
+    /// By how much diffuse light is multiplied, linear RGB.
+    pub(super) diffuse: DVec3,
+    /// The mirrored direction of unit length, and by how much what comes from there is multiplied.
+    pub(super) mirrored: (DVec3, DVec3),
+    /// Likewise behind the surface, if anything comes from there.
+    pub(super) refracted: Option<(DVec3, DVec3)>,
+}
+
 /// What all lights together do to a point.
 struct Lit {
-    /// Sum of E cos, linear RGB, ambient light included.
+    /// Sum of E cos, linear RGB, with the light that is everywhere.
     diffuse: DVec3,
     /// Sum of E lobe, linear RGB.
     specular: DVec3,
@@ -38,30 +50,46 @@ struct Lit {
 
 impl Reference<'_> {
     /// What the ray that met `surface` brings, linear RGB, and the lights that contribute there.
-    pub(super) fn shade(&self, surface: &Surface<'_>, bounce: Bounce, seen: &mut Seen) -> (DVec3, u64) {
-        let material = surface.material;
-        let refracted = surface.refracted();
-        let weights = surface.weights(refracted);
-        let towards_white = |colour: DVec3| colour + (DVec3::ONE - colour) * weights.whiteness;
+    pub(super) fn shade(
+        &self,
+        surface: &Surface<'_>,
+        bounce: Bounce,
+        random: &mut Random,
+        seen: &mut Seen,
+    ) -> (DVec3, u64) {
+        let ways = surface.ways();
+        let (mut colour, lights) = self.sent(surface, &ways, self.model.render.ambient, bounce.place, seen);
+        let (mirrored, weight) = ways.mirrored;
+        if let Some(next) = bounce.next(bounce.place.mirrored(), weight) {
+            colour += weight * self.trace(surface, surface.strewn(mirrored, random), next, random, seen);
+        }
+        if let Some((direction, weight)) = ways.refracted
+            && let Some(next) = bounce.next(bounce.place.refracted(), weight)
+        {
+            colour += weight * self.trace(surface, direction, next, random, seen);
+        }
+        (colour, lights)
+    }
 
-        let lit = self.lit(surface, &weights);
+    /// What a surface sends of its own, of the light that is everywhere and of the lights, linear RGB, and which lights
+    /// contribute.
+    pub(super) fn sent(
+        &self,
+        surface: &Surface<'_>,
+        ways: &Ways,
+        ambient: DVec3,
+        place: Place,
+        seen: &mut Seen,
+    ) -> (DVec3, u64) {
+        let (material, weights) = (surface.material, &ways.weights);
+        let lit = self.lit(surface, weights, ambient);
         // What gives nothing back need not be lit, and others do not look for lights there.
-        if surface.albedo * weights.diffuse != DVec3::ZERO || weights.specular > 0.0 {
-            (0..u64::BITS).filter(|i| lit.lights >> i & 1 != 0).for_each(|i| seen.light(bounce.place, i));
+        if ways.diffuse != DVec3::ZERO || weights.specular > 0.0 {
+            (0..u64::BITS).filter(|i| lit.lights >> i & 1 != 0).for_each(|i| seen.light(place, i));
         }
         let mut colour = material.emission + surface.albedo * lit.diffuse * weights.diffuse;
         if let Some(specular) = &material.specular {
-            colour += towards_white(specular.colour) * lit.specular * weights.specular;
-        }
-        let mut follow = |place: Place, direction: DVec3, weight: DVec3| {
-            if let Some(next) = bounce.next(place, weight) {
-                colour += weight * self.trace(surface, direction, next, seen);
-            }
-        };
-        let mirrored = towards_white(reflection_tint(material)) * weights.reflected;
-        follow(bounce.place.mirrored(), surface.reflected(), mirrored);
-        if let Some(direction) = refracted {
-            follow(bounce.place.refracted(), direction, transmission_tint(material) * weights.refracted);
+            colour += weights.towards_white(specular.colour) * lit.specular * weights.specular;
         }
         (colour, lit.lights)
     }
@@ -78,9 +106,9 @@ impl Reference<'_> {
         }
     }
 
-    /// What the lights do to a point.
-    fn lit(&self, surface: &Surface<'_>, weights: &Weights) -> Lit {
-        let mut lit = Lit { diffuse: self.model.render.ambient, specular: DVec3::ZERO, lights: 0 };
+    /// What the lights do to a point, beside light that is everywhere.
+    fn lit(&self, surface: &Surface<'_>, weights: &Weights, ambient: DVec3) -> Lit {
+        let mut lit = Lit { diffuse: ambient, specular: DVec3::ZERO, lights: 0 };
         let specular = surface.material.specular.filter(|_| weights.specular > 0.0);
         if weights.diffuse == 0.0 && specular.is_none() {
             return lit;
@@ -155,7 +183,28 @@ impl Reference<'_> {
     }
 }
 
+impl Weights {
+    /// A colour of highlights or reflections, as it is at the ray's angle.
+    fn towards_white(&self, colour: DVec3) -> DVec3 {
+        colour + (DVec3::ONE - colour) * self.whiteness
+    }
+}
+
 impl Surface<'_> {
+    /// What becomes of light here.
+    pub(super) fn ways(&self) -> Ways {
+        let refracted = self.refracted();
+        let weights = self.weights(refracted);
+        let mirrored = weights.towards_white(reflection_tint(self.material)) * weights.reflected;
+        let passing = transmission_tint(self.material) * weights.refracted;
+        Ways {
+            diffuse: self.albedo * weights.diffuse,
+            mirrored: (self.reflected(), mirrored),
+            refracted: refracted.map(|direction| (direction, passing)),
+            weights,
+        }
+    }
+
     /// The normal by which a ray is turned: ns, where that faces the ray and sends it to the side of ng that it is to be
     /// on, else ng.
     fn turned(&self, turn: impl Fn(DVec3) -> Option<DVec3>, stays: bool) -> Option<DVec3> {

@@ -6,6 +6,7 @@ use core_rt::kernel::NONE;
 use glam::DVec3;
 
 use super::Reference;
+use super::random::Random;
 use super::ray::Ray;
 use super::surface::Surface;
 use crate::witness::{Place, Seen};
@@ -39,7 +40,14 @@ impl Bounce {
 
 impl Reference<'_> {
     /// The light, linear RGB, that reaches a point of a surface from `direction`.
-    pub(super) fn trace(&self, from: &Surface<'_>, direction: DVec3, bounce: Bounce, seen: &mut Seen) -> DVec3 {
+    pub(super) fn trace(
+        &self,
+        from: &Surface<'_>,
+        direction: DVec3,
+        bounce: Bounce,
+        random: &mut Random,
+        seen: &mut Seen,
+    ) -> DVec3 {
         if bounce.depth > self.model.render.max_depth {
             return self.background(direction);
         }
@@ -47,7 +55,7 @@ impl Reference<'_> {
         let nearest = self.closest(&ray, |shape, ray| shape.intersect_from(ray, from.prim, self.contact));
         seen.surface(bounce.place, nearest.map_or(NONE, |(_, prim)| prim));
         match nearest {
-            Some((crossing, prim)) => self.shade(&self.surface(&ray, crossing, prim), bounce, seen).0,
+            Some((crossing, prim)) => self.shade(&self.surface(&ray, crossing, prim), bounce, random, seen).0,
             None => self.background(direction),
         }
     }

@@ -3,7 +3,7 @@
 use super::row::{Cause, Causes, Cost, Instructions, Measured, Outcome, Point, Row, Time, name};
 
 /// The columns, in order. `docs/REPORT.md` says what they are.
-pub const COLUMNS: [&str; 61] = [
+pub const COLUMNS: [&str; 62] = [
     "scene",
     "study",
     "machine",
@@ -18,6 +18,7 @@ pub const COLUMNS: [&str; 61] = [
     "c",
     "d",
     "e",
+    "reference_samples",
     "outcome",
     "reason",
     "over_64",
@@ -104,10 +105,23 @@ fn shown<T: ToString>(value: Option<T>) -> String {
 }
 
 fn of_point(point: &Point) -> Vec<String> {
-    let Point { scene, study, kernel, machine, size, samples, depth, leaf, grid_bits, triangles, knobs } = point;
+    let Point {
+        scene,
+        study,
+        kernel,
+        machine,
+        size,
+        samples,
+        depth,
+        leaf,
+        grid_bits,
+        triangles,
+        knobs,
+        reference_samples,
+    } = point;
     let [c, d, e] = knobs.map(shown);
     let [width, height] = size.map(|side| side.to_string());
-    let numbers = [shown(*leaf), shown(*grid_bits), shown(*triangles), c, d, e];
+    let numbers = [shown(*leaf), shown(*grid_bits), shown(*triangles), c, d, e, shown(*reference_samples)];
     let point = [scene.clone(), name(study), name(machine), kernel.clone(), width, height];
     point.into_iter().chain([samples.to_string(), depth.to_string()]).chain(numbers).collect()
 }

@@ -78,7 +78,9 @@ impl<'a> Bench<'a> {
         let (rendered, seen) = engine.witness(prepared.blob.bytes(), TILE, &|_| ()).map_err(Trouble::blob)?;
         let truth_name = truth_name(point);
         let truth = self.truths.of(point, || {
-            let truth = Truth::of(&self.model(&plain(point))?);
+            let mut model = self.model(&plain(point))?;
+            model.render.samples = truth_samples(point);
+            let truth = Truth::of(&model);
             self.write(&truth_name, &truth.picture)?;
             Ok::<_, Trouble>(truth)
         })?;
@@ -87,9 +89,11 @@ impl<'a> Bench<'a> {
         let drawn = Drawn { picture: &rendered.picture, seen: &seen };
         let reference = Drawn { picture: &truth.picture, seen: &truth.seen };
         // Another mesh has other numbers of triangles: what is seen cannot be compared.
-        let causes = match point.triangles {
-            None => causes(drawn, reference, model.render.format).map_err(Trouble::size)?,
-            Some(_) => Causes::default(),
+        // Nor can it where rays are random.
+        let causes = if point.triangles.is_none() && point.reference_samples.is_none() {
+            causes(drawn, reference, model.render.format).map_err(Trouble::size)?
+        } else {
+            Causes::default()
         };
         let measured = Measured {
             error: compare(&rendered.picture, &truth.picture).map_err(Trouble::size)?,
@@ -197,6 +201,7 @@ fn plain(point: &Point) -> Point {
         grid_bits: None,
         triangles: None,
         knobs: [None; 3],
+        reference_samples: None,
         ..point.clone()
     }
 }
@@ -219,9 +224,14 @@ pub(super) fn pictures(point: &Point) -> [PathBuf; 2] {
     [picture_name(point), truth_name(point)].map(PathBuf::from)
 }
 
+/// Camera rays a pixel of the reference's picture.
+pub(super) fn truth_samples(point: &Point) -> u32 {
+    point.reference_samples.unwrap_or(point.samples)
+}
+
 /// Scene, size, samples and depth.
 fn truth_name(point: &Point) -> String {
-    named(point, "reference", "")
+    named(&Point { samples: truth_samples(point), ..point.clone() }, "reference", "")
 }
 
 /// The same for all machines and studies.

@@ -59,6 +59,8 @@ pub struct Traits {
     pub branches: bool,
     /// How many triangles it has.
     pub triangles: u32,
+    /// Whether what samples see is random, so that the reference needs more of them.
+    pub is_random: bool,
     /// How few its mesh can be decimated to; the same where it cannot be.
     pub fewest: u32,
 }
@@ -68,6 +70,15 @@ const CHIP: [u32; 2] = [160, 128];
 
 /// Pictures of the host, likewise.
 const HOST: [u32; 2] = [640, 480];
+
+/// Pictures of random samples, of which there may be a thousand a pixel, likewise.
+const RANDOM: [u32; 2] = [80, 64];
+
+/// How many times the samples of a picture the reference has where they are random: its own noise is half the picture's.
+const SURER: u32 = 4;
+
+/// Samples a pixel by which a random picture's error is measured: each time four times as many, so that the error halves.
+const RANDOM_SAMPLES: [u32; 6] = [1, 4, 16, 64, 256, 1024];
 
 /// Kernels whose numbers are varied: the narrowest, the best, and what a user would do instead.
 const STUDIED: [&str; 3] = ["exact14", "exact29", "f32"];
@@ -100,12 +111,16 @@ fn of_machine(scene: &Traits, selection: &Selection, machine: Machine) -> Vec<Po
             continue;
         }
         // It has spheres alone.
-        let planes = (scene.triangles == 0 && scene.samples == 1).then_some(PLANES12);
+        let planes = (scene.triangles == 0 && scene.samples == 1 && !scene.is_random).then_some(PLANES12);
         let kernels = ENGINES.into_iter().chain(planes);
         all.extend(kernels.map(|engine| point(scene, Study::Kernels, engine.name(), machine, size)));
     }
     let size = sizes.into_iter().min_by_key(|&[width, height]| u64::from(width) * u64::from(height)).unwrap_or(small);
     let of = |study, kernel: &str| point(scene, study, kernel, machine, size);
+    if scene.is_random && machine == Machine::Host {
+        let size = if selection.sizes.is_empty() { bounded(scene.size, RANDOM) } else { size };
+        all.extend(random_samples(scene, selection.quick, machine, size));
+    }
     for kernel in ["hanika-c", "hanika-cd"] {
         all.extend(arithmetic(selection.quick, &of, kernel));
     }
@@ -140,7 +155,21 @@ fn point(scene: &Traits, study: Study, kernel: &str, machine: Machine, size: [u3
         grid_bits: None,
         triangles: None,
         knobs: [None; 3],
+        reference_samples: scene.is_random.then(|| SURER * scene.samples),
     }
+}
+
+/// Random samples, by every kernel: how fast the noise falls, and what is left of the kernel's own error. All are compared with
+/// the one picture that the reference has the most samples for.
+fn random_samples(scene: &Traits, quick: bool, machine: Machine, size: [u32; 2]) -> Vec<Point> {
+    let counts = if quick { &RANDOM_SAMPLES[..4] } else { &RANDOM_SAMPLES };
+    let most = counts.iter().copied().max().unwrap_or(1);
+    let of = |kernel: &str, samples| Point {
+        samples,
+        reference_samples: Some(SURER * most),
+        ..point(scene, Study::Samples, kernel, machine, size)
+    };
+    ENGINES.iter().flat_map(|engine| counts.iter().map(move |&samples| of(engine.name(), samples))).collect()
 }
 
 /// C, D and E, of the kernels that have them.
@@ -179,7 +208,9 @@ fn numbers(scene: &Traits, quick: bool, of: &impl Fn(Study, &str) -> Point, kern
         return all;
     }
     add(Study::Leaf, &few(&[1, 2, 4, 8, 16, 32, 64]), |point, leaf| point.leaf = Some(leaf));
-    add(Study::Samples, &few(&[1, 2, 4, 8, 16]), |point, samples| point.samples = samples);
+    if !scene.is_random {
+        add(Study::Samples, &few(&[1, 2, 4, 8, 16]), |point, samples| point.samples = samples);
+    }
     if scene.branches {
         add(Study::Depth, &few(&[0, 1, 2, 3, 4, 6, 8, 10]), |point, depth| point.depth = depth);
     }
@@ -243,6 +274,7 @@ mod tests {
             branches: true,
             triangles: 1570,
             fewest: 120,
+            is_random: false,
         }
     }
 
@@ -296,6 +328,21 @@ mod tests {
         assert_eq!(targets(&scene()), [120, 300, 1000]);
         assert_eq!(targets(&Traits { fewest: 1, ..scene() }), [100, 300, 1000]);
         assert_eq!(targets(&Traits { fewest: 1570, ..scene() }), [0; 0]);
+    }
+
+    #[test]
+    fn random_samples_are_compared_with_one_picture_of_many() {
+        let random = Traits { is_random: true, samples: 16, ..scene() };
+        for (quick, counts) in [(true, 4), (false, 6)] {
+            let all = points(&random, &Selection { quick, studies: vec![Study::Samples], ..Selection::default() });
+            assert_eq!(all.len(), ENGINES.len() * counts);
+            let most = all.iter().map(|point| point.samples).max();
+            assert!(all.iter().all(|point| point.machine == Machine::Host && point.size == [80, 60]));
+            assert!(all.iter().all(|point| point.reference_samples == most.map(|most| SURER * most)));
+        }
+        let kernels = Selection { studies: vec![Study::Kernels], ..Selection::default() };
+        assert!(points(&random, &kernels).iter().all(|point| point.reference_samples == Some(64)));
+        assert!(points(&scene(), &Selection::default()).iter().all(|point| point.reference_samples.is_none()));
     }
 
     #[test]

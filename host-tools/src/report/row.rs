@@ -89,6 +89,9 @@ pub struct Point {
     pub triangles: Option<u32>,
     /// C, D and E of the 2009 report, where they are set.
     pub knobs: [Option<u8>; 3],
+    /// Camera rays a pixel of the reference's picture, where they are random and it has more of them; `None` for as many.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reference_samples: Option<u32>,
 }
 
 /// For messages: kernel, machine, scene and what is varied.

@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
+use super::measure::truth_samples;
 use super::row::Point;
 use crate::model::Model;
 use crate::picture::Picture;
@@ -40,7 +41,7 @@ pub(super) struct Truths(Mutex<Vec<(Key, Arc<Truth>)>>);
 impl Truths {
     /// The picture of a point, drawn if it is not there.
     pub(super) fn of<E>(&self, point: &Point, draw: impl FnOnce() -> Result<Truth, E>) -> Result<Arc<Truth>, E> {
-        let key = (point.scene.clone(), point.size, point.samples, point.depth);
+        let key = (point.scene.clone(), point.size, truth_samples(point), point.depth);
         // Others wait: they would draw the same. Nothing is half done where one of them panics.
         let mut there = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, truth)) = there.iter().find(|(known, _)| *known == key) {

@@ -27,17 +27,28 @@ fn scenes_that_it_does_not_know() {
              a chip\n",
         );
     }
-    spheres.refuses(
+    for line in [
         "prep scene.toml --kernel planes12 -o out.blob",
-        "error: planes12 is known to render, trace, emulate, report, stress and pixel-planes; choose another kernel\n",
-    );
+        "inspect scene.toml --kernel planes12",
+        "flash scene.toml --kernel planes12 --board pico --uf2 out.uf2",
+    ] {
+        spheres.refuses(
+            line,
+            "error: planes12, the tracer of 1994, draws spheres alone and has no blobs: render, trace, emulate, report, stress, \
+             pixel-planes and view know it; choose another kernel, such as exact29, or exact14 for a chip\n",
+        );
+    }
     spheres.refuses(
         "emulate scene.toml --kernel planes12 --board microbit --hits tile -o out.png",
         "error: --hits and --breakdown are of kernels with a tree; planes12 has neither\n",
     );
     spheres.refuses(
         "render scene.toml --kernel planes12 --samples 4 -o out.png",
-        "error: --leaf, --prefer, --grid-bits, --samples, --format and the knobs of arithmetic are other kernels'; planes12 has \
+        "error: planes12 has several samples of rough mirrors alone, and no material has a roughness; leave out --samples\n",
+    );
+    spheres.refuses(
+        "render scene.toml --kernel planes12 --format rgb565 -o out.png",
+        "error: --leaf, --prefer, --grid-bits, --paths, --format and the knobs of arithmetic are other kernels'; planes12 has \
          none of them\n",
     );
 }

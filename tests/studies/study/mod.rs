@@ -11,6 +11,7 @@ pub(crate) mod kernels;
 pub(crate) mod leaf_bounds;
 pub(crate) mod leaf_threshold;
 pub(crate) mod machine;
+pub(crate) mod paths;
 pub(crate) mod planes;
 pub(crate) mod plot;
 pub(crate) mod scenes;

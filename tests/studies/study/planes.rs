@@ -51,6 +51,14 @@ pub(crate) struct Row {
     pub(crate) up_to_2: usize,
 }
 
+/// What there is beside the text.
+const ROUGH: &str = "\n## Rough mirrors\n\nThe text would like \"statistically-based random jittering of reflection rays\", several dozen samples a pixel. `planes12` has it \
+    where a mirror has a `roughness` (`docs/SHADING.md`): the reflected ray m goes on along m + r |m| s, for a point s of the unit \
+    sphere by a hash of pixel, sample and generation, is brought back to the length of m, and mirrored at the surface where it would go into it. \
+    So normals and rays stay in their words, processors need no generator, and no edge of a tile or a renderer shows. A pixel is the \
+    mean of the scene's `samples`, all through its middle. Lanes in lockstep, pixels one by one and both chips have the same \
+    bits; a scene without rough mirrors takes as long as before. The machine below has none: its program is the text's.\n";
+
 /// All figures.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Planes {
@@ -69,7 +77,12 @@ fn spheres() -> Vec<Sphere> {
     let sphere = |(centre, colour): ([i16; 3], [u16; 3])| Sphere {
         centre,
         radius: RADIUS,
-        surface: Surface { lit: colour.map(|c| c * 560), own: colour.map(|c| c * 100), mirror: [1024; 3] },
+        surface: Surface {
+            lit: colour.map(|c| c * 560),
+            own: colour.map(|c| c * 100),
+            mirror: [1024; 3],
+            roughness: 0,
+        },
     };
     CENTRES.into_iter().zip(colours).map(sphere).collect()
 }
@@ -93,7 +106,7 @@ fn camera(size: [u16; 2], length: u16) -> Camera {
 
 fn settings(size: [u16; 2], t_bits: u32) -> Settings {
     let widths = Widths::new(12, 24, 36, t_bits).expect("bits in range");
-    Settings { widths, size, generations: 2, outline: Outline::Nearest }
+    Settings { widths, size, generations: 2, outline: Outline::Nearest, samples: 1 }
 }
 
 fn scene(spheres: &[Sphere], camera: Camera, settings: Settings) -> Scene<'_> {
@@ -117,7 +130,7 @@ fn row(size: [u16; 2], length: u16, bits: u32) -> Row {
         let (origin, direction) = scene.ray(pixel);
         let real = way(&spheres, origin, direction, 2);
         let mut met = Vec::new();
-        pixel::trace_telling(&scene, pixel, |one| met.push(one));
+        pixel::trace_telling(&scene, pixel, 0, |one| met.push(one));
         let (Some(real_first), Some(first)) = (real.first(), met.first()) else { continue };
         if first.sphere != real_first.sphere {
             continue;
@@ -246,6 +259,7 @@ impl Planes {
              | ![literal](studies/planes-literal.png) | ![corrected](studies/planes-nearest.png) |\n",
             self.otherwise, self.covered
         );
+        text += ROUGH;
         text
     }
 }

@@ -15,7 +15,7 @@ pub(crate) struct Plot<'a> {
 const SIZE: (u32, u32) = (760, 420);
 
 /// Told apart by those who see few colours (Okabe & Ito, "Color Universal Design", 2008).
-const COLOURS: [RGBColor; 8] = [
+pub(crate) const COLOURS: [RGBColor; 8] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),

@@ -51,14 +51,17 @@ fn boards_draw_the_host_s_picture_within_their_instructions() {
 }
 
 #[test]
-fn boards_draw_scenes_of_all_widths_and_outlines_as_the_host_does() {
+fn boards_draw_scenes_of_all_widths_outlines_and_mirrors_as_the_host_does() {
     let mut random = SplitMix64(6);
     let place = Grid { origin: DVec3::ZERO, scale: 1.0 };
     for board in boards() {
         let elf = planes::provide(board).unwrap();
-        for _ in 0..6 {
+        for number in 0..6 {
             // Tiles and lanes beyond the picture are cut off.
-            let parts = scenes::scene(&mut random, 9, [19, 21]);
+            let mut parts = scenes::scene(&mut random, 9, [19, 21]);
+            if number % 2 == 1 {
+                scenes::roughen(&mut random, &mut parts);
+            }
             let scene = parts.scene();
             let expected = picture(&scene, &light(&scene, Way::Pixels, &|_| ()), model::Transfer::Linear);
             let blob = blob(&scene, &place, Transfer::Linear);
@@ -74,7 +77,8 @@ fn a_blob_is_read_as_it_was_written_and_refused_where_a_bit_is_not() {
     let mut random = SplitMix64(9);
     let place = Grid { origin: DVec3::new(-1.0, 2.5, 0.0), scale: 7.0 };
     for _ in 0..20 {
-        let parts = scenes::scene(&mut random, 9, [16, 8]);
+        let mut parts = scenes::scene(&mut random, 9, [16, 8]);
+        scenes::roughen(&mut random, &mut parts);
         let scene = parts.scene();
         let blob = blob(&scene, &place, Transfer::Linear);
         let (found, transfer) = read(blob.bytes()).unwrap();

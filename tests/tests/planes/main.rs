@@ -22,7 +22,7 @@ fn pixels() -> impl Iterator<Item = [u16; 2]> {
 
 fn way(scene: &Scene<'_>, pixel: [u16; 2]) -> (Light, Vec<Met>) {
     let mut way = Vec::new();
-    let light = pixel::trace_telling(scene, pixel, |met| way.push(met));
+    let light = pixel::trace_telling(scene, pixel, 0, |met| way.push(met));
     (light, way)
 }
 
@@ -106,6 +106,26 @@ fn lanes_in_lockstep_have_the_light_of_pixels_one_by_one() {
         lit += expected.iter().filter(|&&light| light != scenes::BACKGROUND).count();
     }
     assert!(lit > 10_000, "{lit}");
+}
+
+#[test]
+fn rough_mirrors_are_the_same_in_lockstep_and_one_by_one() {
+    let mut random = SplitMix64(12);
+    let mut strewn = 0;
+    for _ in 0..100 * effort() {
+        let mut parts = scenes::scene(&mut random, 12, SIZE);
+        let sharp: Vec<Light> = pixels().map(|pixel| pixel::trace(&parts.scene(), pixel)).collect();
+        scenes::roughen(&mut random, &mut parts);
+        let scene = parts.scene();
+        let expected: Vec<Light> = pixels().map(|pixel| pixel::trace(&scene, pixel)).collect();
+        for unit in [Lockstep::PORTABLE, Lockstep::detected()] {
+            for tile in [by_lanes::<1>, by_lanes::<3>, by_lanes::<32>] {
+                assert_eq!(tile(&scene, unit), expected, "{} {:?}", unit.name(), parts.settings);
+            }
+        }
+        strewn += expected.iter().zip(&sharp).filter(|(light, sharp)| light != sharp).count();
+    }
+    assert!(strewn > 500, "{strewn}");
 }
 
 #[test]

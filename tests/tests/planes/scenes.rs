@@ -43,6 +43,7 @@ pub(crate) fn scene(random: &mut SplitMix64, most: u64, size: [u16; 2]) -> Parts
         size,
         generations: 1 + random.below(5) as u16,
         outline: if random.coin() { Outline::Nearest } else { Outline::Literal },
+        samples: 1,
     };
     let edge = i64::from(settings.widths.coordinate_max());
     let triple = |random: &mut SplitMix64, most: i64| [(); 3].map(|()| random.within([-most, most]) as i16);
@@ -56,6 +57,7 @@ pub(crate) fn scene(random: &mut SplitMix64, most: u64, size: [u16; 2]) -> Parts
                 lit: colour(random, LIGHT_MAX),
                 own: colour(random, LIGHT_MAX / 8),
                 mirror: if random.below(4) == 0 { [0; 3] } else { colour(random, SHARE_ONE) },
+                roughness: 0,
             },
         }
     });
@@ -77,4 +79,14 @@ pub(crate) fn scene(random: &mut SplitMix64, most: u64, size: [u16; 2]) -> Parts
         Camera { origin: linear(random), direction: constant(random) }
     };
     Parts { spheres, light: triple(random, edge), camera, settings }
+}
+
+/// Makes some spheres rough, the first for certain, and a pixel the mean of a few samples.
+pub(crate) fn roughen(random: &mut SplitMix64, parts: &mut Parts) {
+    for (number, sphere) in parts.spheres.iter_mut().enumerate() {
+        if number == 0 || random.coin() {
+            sphere.surface.roughness = random.within([1, SHARE_ONE.into()]) as u16;
+        }
+    }
+    parts.settings.samples = 1 + random.below(4) as u16;
 }

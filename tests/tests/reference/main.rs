@@ -3,6 +3,7 @@
 
 mod materials;
 mod nearest;
+mod paths;
 mod picture;
 mod recursion;
 mod scenes;

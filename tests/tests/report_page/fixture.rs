@@ -72,6 +72,7 @@ fn point(scene: &str, study: Study, kernel: &str, machine: Machine) -> Point {
         grid_bits: None,
         triangles: None,
         knobs: [None; 3],
+        reference_samples: None,
     }
 }
 

@@ -23,6 +23,7 @@ usage: cargo xtask VERB
   fuzz [--seconds N]   fuzzes the blob and the importers, N seconds each (60)
   studies [--quick]    measures the 2009 report's claims and writes docs/STUDIES.md; quickly, and smaller, to out/studies
   planes               measures the tracer of 1994 and writes docs/PLANES.md
+  paths                measures error against samples of paths and writes docs/PATHS.md
   bless                renews the goldens and the figures of documents, and shows which changed
   speed [--quick]      compares chips by instructions and hosts by ratios, and writes docs/SPEED.md; quickly to out/speed
   report               measures the gallery and writes docs/report, and the README's part of it
@@ -53,6 +54,7 @@ enum Verb {
     Studies { quick: bool },
     Speed { quick: bool },
     Planes,
+    Paths,
     Bless,
     Report,
     DemoScene,
@@ -72,6 +74,7 @@ impl Verb {
             ["studies"] => Some(Self::Studies { quick: false }),
             ["studies", "--quick"] => Some(Self::Studies { quick: true }),
             ["planes"] => Some(Self::Planes),
+            ["paths"] => Some(Self::Paths),
             ["bless"] => Some(Self::Bless),
             ["report"] => Some(Self::Report),
             ["demo-scene"] => Some(Self::DemoScene),
@@ -127,6 +130,10 @@ fn perform(verb: Verb) -> Result<(), String> {
         Verb::Planes => {
             let line = "cargo run --quiet --release -p tests --bin studies -- --planes";
             run(&[Step::new("the tracer of 1994", Task::new(line))]).map(drop)
+        }
+        Verb::Paths => {
+            let line = "cargo run --quiet --release -p tests --bin studies -- --paths";
+            run(&[Step::new("paths", Task::new(line))]).map(drop)
         }
         Verb::Bless => run(&[
             Step::new(
@@ -190,6 +197,7 @@ mod tests {
         assert_eq!(Verb::parse(&["test", "--long"]), Some(Verb::Test { long: true }));
         assert_eq!(Verb::parse(&["fuzz", "--seconds", "5"]), Some(Verb::Fuzz { seconds: 5 }));
         assert_eq!(Verb::parse(&["planes"]), Some(Verb::Planes));
+        assert_eq!(Verb::parse(&["paths"]), Some(Verb::Paths));
         assert_eq!(Verb::parse(&["report"]), Some(Verb::Report));
         assert_eq!(Verb::parse(&["speed", "--quick"]), Some(Verb::Speed { quick: true }));
         assert_eq!(Verb::parse(&["studies", "--quick"]), Some(Verb::Studies { quick: true }));

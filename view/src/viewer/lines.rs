@@ -36,6 +36,9 @@ impl Viewer {
     fn picture_line(&self) -> String {
         let [width, height] = self.canvas.size();
         let begin = format!("{} {width}x{height}", self.kernel());
+        if let (Some(samples), None) = (self.facts.samples, self.facts.full_after) {
+            return format!("{begin}: {samples} samples and more");
+        }
         let Some(took) = self.facts.took else { return begin };
         let milliseconds = 1000.0 * took.seconds;
         match (self.wish.and_then(|wish| wish.draft), self.facts.full_after) {

@@ -12,7 +12,7 @@ use crate::painter::{Drawn, Wish};
 /// What a key does once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
-    /// The kernel of a place among [`ENGINES`](host_tools::engine::ENGINES).
+    /// The kernel of a place among [`KERNELS`](crate::kernels::KERNELS).
     Kernel(usize),
     /// To the chip's panel, and back.
     Chip,
@@ -43,6 +43,8 @@ pub enum Order {
     Save(Picture, &'static str),
     /// Write a camera into the scene.
     WriteCamera(Camera),
+    /// Say why something is not done.
+    Warn(String),
     /// End.
     Quit,
 }
@@ -65,7 +67,7 @@ pub enum Update {
 /// How one begins.
 #[derive(Clone, Copy, Debug)]
 pub struct Setup {
-    /// The kernel's place among [`ENGINES`](host_tools::engine::ENGINES), in the window and on the chip.
+    /// The kernel's place among [`KERNELS`](crate::kernels::KERNELS), in the window and on the chip.
     pub kernels: [usize; 2],
     /// Width and height of the window, pixels.
     pub size: [u32; 2],

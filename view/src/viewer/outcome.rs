@@ -23,6 +23,11 @@ impl Viewer {
                 tiles.iter().for_each(|(tile, pixels)| self.canvas.tile(*tile, pixels));
                 Vec::new()
             }
+            Drawn::Fewer(tiles, samples) => {
+                tiles.iter().for_each(|(tile, pixels)| _ = self.canvas.show(*tile, pixels));
+                self.facts.samples = Some(samples);
+                Vec::new()
+            }
             Drawn::Full(took) => {
                 self.facts.took = Some(took);
                 self.facts.full_after = Some(now - self.changed_at);

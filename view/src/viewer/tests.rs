@@ -107,7 +107,7 @@ fn kernels_are_switched_and_what_comes_late_is_not_seen() {
     viewer.act(Action::Kernel(3), 1.0);
     viewer.act(Action::Kernel(99), 1.0);
     let second = wish(viewer.tick(1.0));
-    assert_eq!((second.view.kernel, second.draft, viewer.kernel()), (3, None, ENGINES[3].name()));
+    assert_eq!((second.view.kernel, second.draft, viewer.kernel()), (3, None, KERNELS[3].name()));
     assert!(full(&mut viewer, first, 255, 1.5).is_empty());
     assert!(viewer.full().is_none());
     full(&mut viewer, second, 3, 2.0);
@@ -221,4 +221,19 @@ fn a_pad_steers_and_rests() {
     viewer.hold(Hold::Left, true, 1.2);
     viewer.let_go(1.25);
     assert!(viewer.steer().is_still());
+}
+
+#[test]
+fn samples_that_are_to_be_more_are_seen_and_are_not_the_full_picture() {
+    let mut viewer = viewer();
+    let first = wish(viewer.tick(0.0));
+    let tiles = |grey| order([64, 48]).into_iter().map(|tile| (tile, vec![[grey; 3]; tile.pixels()])).collect();
+    for (samples, grey) in [(1, 30), (2, 60)] {
+        viewer.update(Update::Drawn(first.serial, Drawn::Fewer(tiles(grey), samples)), 0.5);
+        assert_eq!((viewer.canvas.picture().pixels()[0], viewer.full()), ([grey; 3], None));
+        assert!(viewer.lines()[0].ends_with(&format!("{samples} samples and more")), "{:?}", viewer.lines());
+    }
+    assert!(viewer.tick(0.6).is_none());
+    full(&mut viewer, first, 90, 1.0);
+    assert_eq!(viewer.full().map(|full| full.pixels()[0]), Some([90; 3]));
 }

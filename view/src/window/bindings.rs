@@ -56,7 +56,7 @@ pub(super) fn key(code: KeyCode) -> Option<Key> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use host_tools::engine::ENGINES;
+    use crate::kernels::KERNELS;
 
     #[test]
     fn every_kernel_has_a_key() {
@@ -74,7 +74,7 @@ mod tests {
         for (kernel, digit) in digits.into_iter().enumerate() {
             assert_eq!(key(digit), Some(Key::Act(Action::Kernel(kernel))));
         }
-        assert!(ENGINES.len() <= digits.len());
+        assert!(KERNELS.len() <= digits.len());
         assert_eq!(key(KeyCode::F12), None);
     }
 }

@@ -73,6 +73,72 @@ fn a_still_picture_is_that_of_render_by_every_kernel() {
     assert_eq!(session.end(), Some(0));
 }
 
+/// Spheres alone, two of which see each other.
+const SPHERES: &str = "[camera]\nposition = [0.4, 0.3, 3]\nlook_at = [0, 0, 0]\n\
+    [[sphere]]\ncentre = [-0.5, 0, 0]\nradius = 0.5\nmaterial = 'chrome'\n\
+    [[sphere]]\ncentre = [0.6, 0.1, 0.2]\nradius = 0.4\nmaterial = 'red'\n\
+    [material.chrome]\nkind = 'mirror'\ncolour = [0.9, 0.9, 0.9]\n[material.red]\ncolour = [0.9, 0.1, 0.1]\n\
+    [[light]]\nkind = 'directional'\ndirection = [-1, -2, -1]\n";
+
+#[test]
+fn the_tracer_of_spheres_is_switched_to_where_there_are_spheres_alone() {
+    let Some(display) = Display::start() else { return };
+    let folder = folder();
+    let spheres = folder.path().join("spheres.toml");
+    fs::write(&spheres, SPHERES).unwrap();
+    let planes = Key::digit(ENGINES.len());
+    let session = bare(&display, &folder, "spheres.toml --size 200x160");
+    session.wait_for(&rendered(&spheres, "exact29", SIZE));
+    session.press(planes);
+    let first = rendered(&spheres, "planes12", SIZE);
+    session.wait_for(&first);
+    assert_ne!(first, rendered(&spheres, "exact29", SIZE));
+    // It moves, too.
+    session.hold(&[Key::W, Key::D], 300);
+    session.press(Key::O);
+    assert_eq!(session.line(), "spheres.toml: the camera is written");
+    let moved = rendered(&spheres, "planes12", SIZE);
+    assert_ne!(moved, first);
+    session.wait_for(&moved);
+    session.press(Key::P);
+    assert_eq!(session.line(), "spheres-planes12-1.png: saved");
+    drop(session);
+
+    let session = bare(&display, &folder, "scene.toml --size 200x160 --kernel exact20");
+    let expected = rendered(&folder.path().join("scene.toml"), "exact20", SIZE);
+    session.wait_for(&expected);
+    session.press(planes);
+    let warning = session.warning();
+    assert!(warning.starts_with("warning: planes12 traces spheres alone, and the scene has "), "{warning}");
+    assert!(ENGINES.into_iter().all(|engine| warning.contains(engine.name())), "{warning}");
+    session.wait_for(&expected);
+}
+
+#[test]
+fn samples_of_paths_add_up_to_the_picture_of_render() {
+    let Some(display) = Display::start() else { return };
+    let folder = folder();
+    let scene = folder.path().join("scene.toml");
+    let text = fs::read_to_string(&scene).unwrap().replace("[render]", "[render]\npaths = true\nsamples = 10");
+    fs::write(&scene, text).unwrap();
+    let session = bare(&display, &folder, "scene.toml --size 120x90");
+    let still = rendered(&scene, "exact29", [120, 90]);
+    session.wait_for(&still);
+    session.press(Key::digit(2));
+    session.wait_for(&rendered(&scene, "exact14", [120, 90]));
+    session.press(Key::digit(0));
+    session.hold(&[Key::W, Key::D], 300);
+    session.press(Key::O);
+    assert_eq!(session.line(), "scene.toml: the camera is written");
+    let moved = rendered(&scene, "exact29", [120, 90]);
+    assert_ne!(moved, still);
+    session.wait_for(&moved);
+    // As many samples as the scene says, and not one less.
+    let fewer = fs::read_to_string(&scene).unwrap().replace("samples = 10", "samples = 8");
+    fs::write(&scene, fewer).unwrap();
+    assert_ne!(rendered(&scene, "exact29", [120, 90]), moved);
+}
+
 #[test]
 fn one_moves_by_keys_and_mouse_and_the_camera_goes_to_the_scene() {
     let Some(display) = Display::start() else { return };
@@ -195,7 +261,13 @@ fn what_cannot_be_viewed_is_refused() {
     let folder = folder();
     fs::write(folder.path().join("scene.blob"), "bytes").unwrap();
     fs::write(folder.path().join("bad.toml"), "model = 'demo.obj'\n[camera]\nfov = 3\n").unwrap();
+    let triangles = host_tools::import::load(&folder.path().join("scene.toml")).unwrap().model.triangles.len();
+    let refusal = format!(
+        "error: scene.toml: planes12 traces spheres alone, and the scene has {triangles} triangles; for these there are exact29, \
+         exact20, exact14, hanika-c, hanika-cd, hanika-cons, f32, f64\n"
+    );
     for (line, message) in [
+        ("scene.toml --kernel planes12", refusal.as_str()),
         ("none.toml", "error: none.toml: no such file\n"),
         (
             "scene.blob",

@@ -2,7 +2,8 @@
 
 /// The exponent k of the power law c x^k that is nearest to (x, y) in the squares of log y. `None` with fewer than two
 /// different x, and where something is not positive and finite.
-pub(super) fn exponent(points: &[(f64, f64)]) -> Option<f64> {
+#[must_use]
+pub fn exponent(points: &[(f64, f64)]) -> Option<f64> {
     let usable = |value: f64| value > 0.0 && value.is_finite();
     if points.is_empty() || points.iter().any(|&(x, y)| !usable(x) || !usable(y)) {
         return None;

@@ -11,7 +11,7 @@ mod contact;
 mod context;
 mod cost;
 mod figures;
-mod fit;
+pub mod fit;
 mod labels;
 mod lines;
 mod metric;

@@ -18,6 +18,7 @@ fn row(kernel: &str, machine: Machine, over_64: u64, cost: Cost) -> Row {
         grid_bits: None,
         triangles: None,
         knobs: [None; 3],
+        reference_samples: None,
     };
     let error = Comparison {
         max_abs: 0,
