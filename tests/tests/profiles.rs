@@ -10,6 +10,8 @@ use core_rt::hanika::HanikaC;
 use core_rt::kernel::Kernel;
 use core_rt::profile::{Full, Needs, Prefer, Profile};
 use core_rt::scene::Scene;
+use glam::DVec3;
+use host_tools::model::{Background, Material, MaterialKind, Model, Sphere};
 use host_tools::prepare::{Options, prepare};
 use host_tools::render::render;
 use host_tools::stress::cases;
@@ -46,6 +48,23 @@ macro_rules! needs {
 }
 needs!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31 32 33 34 35 36);
 
+/// A sphere that lets all light pass, where it can: seen from outside at a flat angle it mirrors, and has no mirror's weight.
+fn bubble() -> Model {
+    let material = Material {
+        kind: MaterialKind::Dielectric,
+        colour: DVec3::ONE,
+        ior: 0.6,
+        weights: Some([0.0, 0.0, 0.0, 1.0]),
+        ..Material::default()
+    };
+    Model {
+        spheres: vec![Sphere { centre: DVec3::new(0.0, 0.0, -3.0), radius: 1.0, material: 0 }],
+        materials: vec![material],
+        background: Background::Sky { bottom: DVec3::X, top: DVec3::new(0.0, 0.5, 1.0) },
+        ..Model::default()
+    }
+}
+
 /// Under how many profiles each bit's absence was no hindrance, over all scenes.
 fn check<K: Kernel>() {
     assert_eq!(Needs::ALL.bits(), BITS.iter().fold(0, |all, bit| all | 1 << bit), "a new need is to be tried too");
@@ -53,7 +72,8 @@ fn check<K: Kernel>() {
     let of_cases = cases::all().into_iter().filter(|case| matches!(case.name, "ior-10" | "hall-of-mirrors"));
     let of_cases = of_cases.map(|case| (case.name, (case.subject)().model));
     let by_chance = scenes::pixels().into_iter().filter(|(name, _)| matches!(*name, "paths" | "rough"));
-    for (name, mut model) in scenes::all().into_iter().chain(by_chance).chain(of_cases) {
+    for (name, mut model) in scenes::all().into_iter().chain(by_chance).chain(of_cases).chain([("a bubble", bubble())])
+    {
         model.render.size = [64, 48];
         let stored = |prefer| prepare::<K>(&model, &Options { prefer, ..Options::default() }).expect("it fits").blob;
         let (blob, small) = (stored(Prefer::Speed), stored(Prefer::Size));

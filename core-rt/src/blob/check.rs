@@ -87,7 +87,8 @@ fn materials_and_lights<P: Profile>(header: &Header, shading: &Shading<'_, P::Ke
         let goes_on_in = |share: &Albedo| goes_on && *share != [0; 3];
         used = used
             .with(if lustre.flags & Lustre::PHONG == 0 { Need::BlinnPhong } else { Need::Phong }, lustre.shines())
-            .with(Need::Reflection, goes_on_in(&lustre.reflected))
+            // What would pass a surface, and cannot, is mirrored.
+            .with(Need::Reflection, goes_on_in(&lustre.reflected) || goes_on_in(&lustre.refracted))
             .with(Need::Refraction, goes_on_in(&lustre.refracted))
             .with(Need::Schlick, lustre.flags & (Lustre::FRESNEL | Lustre::METAL) != 0)
             .with(Need::TintedShadow, tints);

@@ -121,7 +121,8 @@ pub(super) fn needs(model: &Model, materials: &[Material], lustres: &[Lustre]) -
         .with(Need::Orthographic, matches!(model.camera.projection, Projection::Orthographic { .. }))
         .with(Need::BlinnPhong, shines(false))
         .with(Need::Phong, shines(true))
-        .with(Need::Reflection, reflects)
+        // What would pass a surface, and cannot, is mirrored.
+        .with(Need::Reflection, reflects || refracts)
         .with(Need::Refraction, refracts)
         .with(Need::Bounces, (reflects || refracts) && max_depth(model) > 0 && !model.render.paths)
         .with(Need::Paths, model.render.paths)
