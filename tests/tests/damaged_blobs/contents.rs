@@ -140,7 +140,22 @@ fn broken_shading<K: Kernel>() {
             ("highlights that are too bright", |d| shiny(d).gain = 16, BlobError::Shading),
             ("an index of refraction of nothing", |d| shiny(d).eta_q28[1] = 0, BlobError::Shading),
             ("a mirror that is not declared", |d| shiny(d).reflected[2] = 1, BlobError::Undeclared(Need::Reflection)),
-            ("glass that is not declared", |d| shiny(d).refracted[0] = 1, BlobError::Undeclared(Need::Refraction)),
+            (
+                "glass that is not declared",
+                |d| {
+                    shiny(d).refracted[0] = 1;
+                    d.header.needs = d.header.needs.with(Need::Reflection, true);
+                },
+                BlobError::Undeclared(Need::Refraction),
+            ),
+            (
+                "glass of which it is not declared that it mirrors",
+                |d| {
+                    shiny(d).refracted[0] = 1;
+                    d.header.needs = d.header.needs.with(Need::Refraction, true);
+                },
+                BlobError::Undeclared(Need::Reflection),
+            ),
             ("a highlight that is not declared", |d| shiny(d).specular[1] = 1, BlobError::Undeclared(Need::BlinnPhong)),
             (
                 "tinted glass that is not declared",
