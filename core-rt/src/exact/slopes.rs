@@ -312,7 +312,7 @@ mod tests {
                 }
                 let shift = if has_octant { slopes.scale() } else { slopes.shift(axis) };
                 // T = delta / d with so many bits; it counts up to 2^16 in Q13.
-                let one = 1i128 << (13 + u32::from(shift) + UNIT_BITS);
+                let one = 1i128 << (13 + shift + UNIT_BITS);
                 assert!(f * d <= one, "{direction:?}: {axis} is high");
                 let most = delta_most.min(((d << (3 + shift)) >> UNIT_BITS) + 1);
                 let (exit, found) = (most * one / d, most * f);

@@ -24,10 +24,19 @@ use crate::num::{Word, mantissa, sub};
 /// Two t, in [`Width::T_BITS`], between which that of a hit is, or at one of which.
 #[derive(Clone, Copy, Debug)]
 pub struct Span<W: Width> {
-    /// The lesser one.
-    pub least: W::Word,
-    /// The greater one.
-    pub most: W::Word,
+    least: W::Word,
+    most: W::Word,
+}
+
+impl<W: Width> Span<W> {
+    /// Whether every one is of an exact t.
+    pub const IS_EXACT: bool = !W::FILTERED;
+
+    /// The lesser one and the greater one.
+    #[must_use]
+    pub fn ends(&self) -> [W::Word; 2] {
+        [self.least, self.most]
+    }
 }
 
 /// That of a hit whose t is known.

@@ -9,6 +9,17 @@ use super::width::Width;
 /// Where a hit is.
 pub type Span<W> = Depth<W>;
 
+impl<W: Width> Depth<W> {
+    /// Whether every one is of an exact t.
+    pub const IS_EXACT: bool = true;
+
+    /// Between which t it is.
+    #[must_use]
+    pub fn ends(&self) -> [W::Word; 2] {
+        [self.t - W::SLACK, self.t + W::SLACK]
+    }
+}
+
 /// That of a hit whose t is known.
 #[inline(always)]
 pub(super) fn of<W: Width>(depth: &Depth<W>) -> Span<W> {
