@@ -126,6 +126,7 @@ fn for_something_else_than_was_asked() {
     let options = [
         "--size 7x4",
         "--samples 4",
+        "--paths",
         "--depth 3",
         "--format gray8",
         "--leaf 2",
@@ -139,8 +140,8 @@ fn for_something_else_than_was_asked() {
     for option in options {
         folder.refuses(
             &format!("render scene.blob {option} -o out.png"),
-            "error: scene.blob: the blob is for 6x4 pixels, and its tree is built; --size, --samples, --depth, --format, \
-             --leaf, --prefer, --grid-bits, --triangles, --texture-size, --texels and the knobs of its arithmetic need the scene that \
+            "error: scene.blob: the blob is for 6x4 pixels, and its tree is built; --size, --samples, --paths, \
+             --depth, --format, --leaf, --prefer, --grid-bits, --triangles, --texture-size, --texels and the knobs of its arithmetic need the scene that \
              it was made from\n",
         );
     }
