@@ -101,8 +101,8 @@ fn without_lights_there_are_no_shadows() {
 /// Functions that are not inlined, by their names, and what their code is for.
 const KNOWN: [(&str, Option<Part>); 6] = [
     ("::leaf_in::", Some(Part::Traversal)),
-    ("core_rt::exact::triangle::undecided", Some(Part::Intersection)),
-    ("core_rt::onward::shares", Some(Part::Shading)),
+    ("core_rt::exact::triangle::filtered", Some(Part::Intersection)),
+    ("core_rt::space::grid14::normalise", Some(Part::Shading)),
     ("core_rt::camera::sum_2x", Some(Part::Rays)),
     ("intray_shadow", Some(Part::Marks)),
     ("memcpy", None),
