@@ -163,7 +163,8 @@ impl<'a, P: Profile> Bvh<'a, P> {
 
     /// Whether a ray hits a primitive, nearer than another that it hits or that is [`NONE`]. By what they are hit at, without error.
     #[inline(never)]
-    fn replaces(&self, ray: &RayOf<P>, index: u32, other: u32) -> bool {
+    #[must_use]
+    pub fn replaces(&self, ray: &RayOf<P>, index: u32, other: u32) -> bool {
         let depth = |index: u32| match self.sphere(index) {
             Some(sphere) => P::Kernel::intersect_sphere(ray, sphere, index == P::Kernel::skip(ray)),
             None => self.triangles.of(index, |triangle| P::Kernel::intersect(ray, triangle)).flatten(),

@@ -59,15 +59,6 @@ pub type Exact20 = Exact<Width20>;
 /// 29-bit grid, 64-bit hot path: for hosts, and the best picture.
 pub type Exact29 = Exact<Width29>;
 
-impl<W: Width> Exact<W> {
-    /// Where a line hits a triangle that it is known to meet, if that is within the ray's reach.
-    #[inline]
-    #[must_use]
-    pub fn depth(ray: &Ray<W>, triangle: &TriangleRecord<W::Short>) -> Option<Depth<W>> {
-        triangle::depth(ray, triangle)
-    }
-}
-
 impl<W: Width> Kernel for Exact<W> {
     const ID: u16 = W::ID;
     const NAME: &'static str = W::NAME;

@@ -23,7 +23,6 @@
 //! Sums of three products are below 3 * 2^59. U and V are at most 2^29, W below 2^31. A value of [`ERROR`] or more has a certain sign.
 
 use core::arch::x86_64::*;
-use core::cmp::Ordering;
 
 use core_rt::bvh::Bvh;
 use core_rt::exact::{Depth, Exact29, Ray, Reciprocal, Reciprocal29, Width, Width29};
@@ -161,11 +160,11 @@ impl Left {
         bits(_mm256_cmpgt_epi32(self.tn, product))
     }
 
-    /// Where a line that meets the triangle of a lane hits it, if that is certainly ahead and before `end`, a t as bounds are.
+    /// Where a line that meets the triangle of a lane hits it, if that is certainly ahead and before `end`, a t as those are.
     /// Both products are below 2^60.
     #[target_feature(enable = "avx2")]
     #[inline]
-    fn within(&self, lane: u32, end: i64) -> Option<At> {
+    fn within(&self, lane: u32, end: i64) -> Option<Between> {
         let at = |row: __m256i| -> i64 {
             let row: [i32; WIDTH] = zerocopy::transmute!(row);
             row[lane as usize % WIDTH].into()
@@ -177,7 +176,7 @@ impl Left {
         let [error, det_error] = [TN_ERROR, DET_ERROR].map(i64::from);
         let least = ((tn - error) << Width29::T_BITS) / (det + det_error);
         let most = ((tn + error) << Width29::T_BITS) / (det - det_error) + 1;
-        (most < end).then_some(At::Within([least, most]))
+        (most < end).then_some([least, most])
     }
 }
 
@@ -275,71 +274,27 @@ fn enter_one_by_one<'n>(
     entered
 }
 
-/// The hit with a triangle, by the kernel: all of its test, or where the line is known to meet it what remains.
+/// Two t between which that of a hit is, or at one of which, in `T_BITS` of the kernel.
+type Between = [i64; 2];
+
+/// The hit with a triangle, by the kernel.
 #[inline(never)]
-fn hit<P: Profile<Kernel = Exact29>>(
-    bvh: &Bvh<'_, P>,
-    ray: &Ray<Width29>,
-    index: u32,
-    is_met: bool,
-) -> Option<Depth<Width29>> {
-    let test = if is_met { Exact29::depth } else { Exact29::intersect };
-    bvh.triangles.of(index, |triangle| test(ray, triangle)).flatten()
+fn hit<P: Profile<Kernel = Exact29>>(bvh: &Bvh<'_, P>, ray: &Ray<Width29>, index: u32) -> Option<Between> {
+    bvh.triangles.of(index, |triangle| Exact29::meet(ray, triangle)).flatten().map(|span| span.ends())
 }
 
-/// Where a hit is.
-enum At {
-    /// Between two t, in `T_BITS` of the kernel.
-    Within([i64; 2]),
-    /// Exactly.
-    Exactly(Depth<Width29>),
-}
-
-impl At {
-    /// Two t that it is between, or at.
-    #[inline]
-    fn bounds(&self) -> [i64; 2] {
-        match *self {
-            Self::Within(bounds) => bounds,
-            Self::Exactly(depth) => [depth.t - Width29::SLACK, depth.t + Width29::SLACK],
-        }
-    }
-}
-
-/// Whether a hit is nearer than another: by bounds where these tell, else exactly, and by their ids where they are as far.
+/// Whether a hit is nearer than another: by bounds where these tell, else by the kernel.
 #[inline]
 fn is_nearer<P: Profile<Kernel = Exact29>>(
     bvh: &Bvh<'_, P>,
     ray: &Ray<Width29>,
-    (index, at): (u32, &At),
-    (other, than): (u32, &At),
+    (index, [least, most]): (u32, Between),
+    (other, [other_least, other_most]): (u32, Between),
 ) -> bool {
-    let ([least, most], [other_least, other_most]) = (at.bounds(), than.bounds());
     if most < other_least || other_most < least {
         return most < other_least;
     }
-    is_exactly_nearer(bvh, ray, (index, at), (other, than))
-}
-
-#[cold]
-#[inline(never)]
-fn is_exactly_nearer<P: Profile<Kernel = Exact29>>(
-    bvh: &Bvh<'_, P>,
-    ray: &Ray<Width29>,
-    (index, at): (u32, &At),
-    (other, than): (u32, &At),
-) -> bool {
-    let depth = |index: u32, at: &At| match *at {
-        At::Within(_) => hit(bvh, ray, index, true),
-        At::Exactly(depth) => Some(depth),
-    };
-    // Both are hits.
-    let Some((depth, than)) = depth(index, at).zip(depth(other, than)) else { return false };
-    match Exact29::order(&depth, &than) {
-        Ordering::Less => true,
-        Ordering::Equal => bvh.id(index) < bvh.id(other),
-        Ordering::Greater => false,
-    }
+    bvh.replaces(ray, index, other)
 }
 
 /// Tells of all hits before the limit that `visit` returns, until it returns none.
@@ -349,12 +304,12 @@ fn hits<P: Profile<Kernel = Exact29>>(
     of: (&Wide<i32, ROWS>, &Bvh<'_, P>),
     ray: &Ray<Width29>,
     stats: &mut impl Stats,
-    mut visit: impl FnMut(u32, At) -> Option<i32>,
+    mut visit: impl FnMut(u32, Between) -> Option<i32>,
 ) {
     let lanes = Lanes::new(ray);
     let end = ray.reach.map_or(i64::MAX, |reach| 1 << (Width29::T_BITS as i32 + reach).clamp(0, 62));
     let test = |found: Found<'_, i32, ROWS, Depth<Width29>>| match found {
-        Found::Sphere(index, depth) => visit(index, At::Exactly(depth)),
+        Found::Sphere(index, depth) => visit(index, Exact29::span(&depth).ends()),
         Found::Packet(packet, mut limit) => {
             let left = lanes.left(packet, limit);
             let mut mask = left.mask;
@@ -367,9 +322,8 @@ fn hits<P: Profile<Kernel = Exact29>>(
                 }
                 let is_met = left.is_met >> lane & 1 != 0;
                 let within = if is_met { left.within(lane, end) } else { None };
-                let at = within.or_else(|| hit(of.1, ray, index, is_met).map(At::Exactly));
-                if let Some(at) = at {
-                    limit = visit(index, at)?;
+                if let Some(between) = within.or_else(|| hit(of.1, ray, index)) {
+                    limit = visit(index, between)?;
                     if mask != 0 {
                         mask &= !left.beyond(limit);
                     }
@@ -400,12 +354,12 @@ pub(super) fn closest<P: Profile<Kernel = Exact29>>(
     ray: &Ray<Width29>,
     stats: &mut impl Stats,
 ) -> u32 {
-    let (mut nearest, mut limit): (Option<(u32, At)>, _) = (None, reach(ray));
-    hits(of, ray, stats, |index, at| {
-        if nearest.as_ref().is_none_or(|nearest| is_nearer(of.1, ray, (index, &at), (nearest.0, &nearest.1))) {
+    let (mut nearest, mut limit): (Option<(u32, Between)>, _) = (None, reach(ray));
+    hits(of, ray, stats, |index, between| {
+        if nearest.is_none_or(|nearest| is_nearer(of.1, ray, (index, between), nearest)) {
             // Not below T: what is as far is still to be found.
-            limit = (at.bounds()[1].min(Width29::T_MAX) >> (Width29::T_BITS - T_BITS)) as i32;
-            nearest = Some((index, at));
+            limit = (between[1].min(Width29::T_MAX) >> (Width29::T_BITS - T_BITS)) as i32;
+            nearest = Some((index, between));
         }
         Some(limit)
     });
