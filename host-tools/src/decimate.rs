@@ -16,11 +16,10 @@
 mod quadric;
 mod surface;
 
-use std::collections::HashMap;
-
 use alum::{HasTopology, Queue};
 use thiserror::Error;
 
+use crate::compacted::Compacted;
 use crate::model::{Model, Triangle};
 use surface::{Face, Surface};
 
@@ -104,27 +103,11 @@ fn rebuilt(model: Model, surface: &Surface) -> Model {
     };
     let triangles = surface.faces.iter().filter(|face| face.is_left).map(triangle).collect();
     Model {
-        positions: positions.old.into_iter().map(|vertex| surface.positions[vertex]).collect(),
-        normals: normals.old.into_iter().filter_map(|wedge| surface.normal(wedge)).collect(),
+        positions: positions.used().map(|vertex| surface.positions[vertex]).collect(),
+        normals: normals.used().filter_map(|wedge| surface.normal(wedge)).collect(),
         triangles,
         uvs: Vec::new(),
         colours: Vec::new(),
         ..model
-    }
-}
-
-/// New numbers for those that are used, in the order of their first use.
-#[derive(Default)]
-struct Compacted {
-    new: HashMap<usize, u32>,
-    old: Vec<usize>,
-}
-
-impl Compacted {
-    fn number(&mut self, old: usize) -> u32 {
-        *self.new.entry(old).or_insert_with(|| {
-            self.old.push(old);
-            self.old.len() as u32 - 1
-        })
     }
 }

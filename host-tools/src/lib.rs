@@ -4,6 +4,7 @@
 pub mod builtin;
 pub mod choose;
 pub mod cli;
+mod compacted;
 pub mod compare;
 pub mod decimate;
 pub mod emulate;

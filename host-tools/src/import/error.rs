@@ -62,14 +62,6 @@ pub enum ImportError {
         /// What is wrong and what would be right.
         message: String,
     },
-    /// A statement that passed our checks and that `tobj` refused nevertheless.
-    #[error("{file}: {source}")]
-    Refused {
-        /// The OBJ.
-        file: String,
-        /// What `tobj` said.
-        source: tobj::LoadError,
-    },
 }
 
 impl ImportError {

@@ -1,9 +1,7 @@
 //! OBJ and MTL are lines of text: this reads the lines, and hands the good ones on.
 //!
-//! `tobj` takes NaN for a coordinate, two corners for a face, has no line numbers, and panics on a
-//! colour of one number. So it never sees a file: it reads from a [`Checked`] stream, which passes
-//! each statement through our own check on the way and holds back what fails. One pass, no copy of
-//! the text.
+//! `tobj` has no line numbers, and panics on a colour of one number. So it never sees an MTL file: it reads from a [`Checked`]
+//! stream, which passes each statement through our own check on the way and holds back what fails. One pass, no copy of the text.
 
 use std::borrow::Cow;
 use std::io::{self, BufRead, Read};

@@ -3,8 +3,8 @@
 //! | file | what it does |
 //! | --- | --- |
 //! | `source` | where files come from |
-//! | `lines` | text to statements, and the checked stream that `tobj` reads |
-//! | `scan`, `obj` | the check of an OBJ; its geometry |
+//! | `lines` | text to statements, and the checked stream that `tobj` reads of an MTL |
+//! | `scan`, `obj` | the check of an OBJ and what it says; its geometry |
 //! | `mtl`, `statement`, `looks` | what an MTL says, the check of it, and what it looks like |
 //! | `texture` | picture files |
 //! | `schema` | the keys of a `scene.toml` |
@@ -110,7 +110,7 @@ pub fn load_from(source: &dyn Source, name: &str) -> Result<Imported, ImportErro
 /// The model of an OBJ, if there is one, under the settings of a scene file.
 fn assemble(source: &dyn Source, obj: Option<&str>, document: &Document) -> Result<Imported, ImportError> {
     let mut warnings = Vec::new();
-    let mut mesh = match obj {
+    let mesh = match obj {
         Some(obj) => obj::read(source, obj, &mut warnings)?,
         None => Mesh::default(),
     };
@@ -122,16 +122,14 @@ fn assemble(source: &dyn Source, obj: Option<&str>, document: &Document) -> Resu
         return Err(ImportError::NoExtent { file: source.describe(obj), x, y, z });
     }
     let materials = document.materials(source, obj, &mesh, &names, &mut warnings)?;
-    if let Some(obj) = obj {
-        mesh.keep_textured(&materials, &source.describe(obj), &mut warnings);
-    }
+    let uvs = obj.map_or_else(Vec::new, |obj| mesh.textured(&materials, &source.describe(obj), &mut warnings));
     let camera = document.camera(bounds)?;
     let model = Model {
         positions: mesh.positions,
         colours: mesh.colours,
         normals: mesh.normals,
         triangles: mesh.triangles,
-        uvs: mesh.uvs,
+        uvs,
         spheres,
         materials,
         lights: document.lights(&camera)?,

@@ -1,18 +1,14 @@
-//! OBJ: our check of every statement, then `tobj`'s parse of what passed, then a [`Mesh`].
-//!
-//! `tobj` splits its meshes at every group and material, numbers vertices anew in each, and fills
-//! in normals that a corner lacks. So it is shown `v`, `vt`, `vn` and `f` statements alone, as one mesh:
-//! the order of the file and shared vertices survive, and the check notes which run of faces has
-//! which material and which of them have normals and texture coordinates at all. Fans are `tobj`'s: corners (0, i, i + 1).
+//! OBJ: what a file says, checked, as a [`Mesh`] of what its faces use.
 
 use std::iter;
 
 use glam::{DVec2, DVec3};
 
 use super::error::{ImportError, Warning, list};
-use super::lines::{Checked, Lines};
-use super::scan::{Faces, Named, ObjCheck};
+use super::lines::Lines;
+use super::scan::{Faces, Named, UNPLACED, scan};
 use super::source::Source;
+use crate::compacted::Compacted;
 use crate::model::{Material, Triangle};
 
 /// The geometry of an OBJ file, its materials by name only.
@@ -22,12 +18,14 @@ pub(super) struct Mesh {
     pub positions: Vec<DVec3>,
     /// Their colours, linear RGB in [0, 1]; empty where there are none.
     pub colours: Vec<DVec3>,
-    /// Texture coordinates of the corners of each triangle that has some; empty where none has.
-    pub uvs: Vec<Option<[DVec2; 3]>>,
     /// The normals that triangles use, of unit length.
     pub normals: Vec<DVec3>,
     /// Fans of the faces, in file order; `material` indexes `materials`.
     pub triangles: Vec<Triangle>,
+    /// Where in `coordinates` those of each triangle's corners are, or [`UNPLACED`]; not of all, where the last have none.
+    uvs: Vec<[u32; 3]>,
+    /// The texture coordinates of the file.
+    coordinates: Vec<DVec2>,
     /// What `usemtl` called the materials of the faces, in order of first use.
     pub materials: Vec<Named>,
     /// The arguments of `mtllib`.
@@ -38,17 +36,7 @@ pub(super) struct Mesh {
 pub(super) fn read(source: &dyn Source, name: &str, warnings: &mut Vec<Warning>) -> Result<Mesh, ImportError> {
     let file = source.describe(name);
     let lines = Lines::open(source, name).map_err(|error| ImportError::unreadable(&file, error))?;
-    let mut statements = Checked::new(ObjCheck { lines, faces: Faces::default() });
-    let options = tobj::LoadOptions { triangulate: true, ..Default::default() };
-    let parsed = tobj::load_obj_buf(&mut statements, &options, |_| Ok(Default::default()));
-    if let Some(failure) = statements.failure {
-        return Err(failure);
-    }
-    let parsed = parsed.map_err(|source| ImportError::Refused { file: file.clone(), source });
-    let Some(parsed) = parsed?.0.pop() else {
-        return Err(ImportError::NoFaces { file });
-    };
-    let faces = statements.check.faces;
+    let faces = scan(lines)?;
     if let Some(&line) = faces.ignored.values().min() {
         let keywords: Vec<&String> = faces.ignored.keys().collect();
         let message = format!("statements that are not rendered are ignored: {}", list(&keywords));
@@ -58,7 +46,7 @@ pub(super) fn read(source: &dyn Source, name: &str, warnings: &mut Vec<Warning>)
         let message = "colours of vertices are ignored: from here on some are not from 0 to 1, or others have none";
         warnings.push(Warning::line(&file, line, message));
     }
-    let (mesh, flattened) = assemble(&parsed.mesh, faces);
+    let (mesh, flattened) = assemble(faces);
     if flattened > 0 {
         let message = format!("triangles with a normal of length zero, drawn flat: {flattened}");
         warnings.push(Warning::file(&file, message));
@@ -66,112 +54,67 @@ pub(super) fn read(source: &dyn Source, name: &str, warnings: &mut Vec<Warning>)
     Ok(mesh)
 }
 
-/// Joins what `tobj` parsed to what the check noted. Also the number of triangles whose normals had
-/// to be dropped.
-fn assemble(parsed: &tobj::Mesh, faces: Faces) -> (Mesh, usize) {
-    let mut normals = Normals::new(&parsed.normals);
-    let mut flattened = 0;
-    let tags = faces.runs.iter().flat_map(|run| iter::repeat_n(run, run.triangles));
-    let corner_normals = parsed.normal_indices.as_chunks().0;
-    let triangles = iter::zip(parsed.indices.as_chunks().0, tags)
-        .enumerate()
-        .map(|(i, (&vertices, run))| {
-            let given = corner_normals.get(i).filter(|_| run.smooth);
-            let kept = given.and_then(|&corners| normals.keep(corners));
-            flattened += usize::from(given.is_some() && kept.is_none());
-            Triangle { vertices, normals: kept, material: run.material }
-        })
-        .collect();
-    let vectors = |components: &[f64]| components.as_chunks().0.iter().map(|&p| DVec3::from_array(p)).collect();
-    let colours = if faces.colours.are_usable() { vectors(&parsed.vertex_color) } else { Vec::new() };
-    let mesh = Mesh {
-        positions: vectors(&parsed.positions),
-        colours,
-        uvs: texture_coordinates(parsed, &faces),
-        triangles,
-        normals: normals.kept,
-        materials: faces.materials,
-        libraries: faces.libraries,
-    };
-    (mesh, flattened)
+/// Keeps what triangles use. Also the number of triangles whose normals had to be dropped.
+fn assemble(faces: Faces) -> (Mesh, usize) {
+    let Faces { mut positions, coordinates, mut normals, mut triangles, uvs, materials, libraries, colours, .. } =
+        faces;
+    triangles.shrink_to_fit();
+    normals.iter_mut().for_each(|normal| *normal = unit(*normal));
+    let (mut vertices, mut kept, mut flattened) = (Compacted::default(), Compacted::default(), 0);
+    for triangle in &mut triangles {
+        triangle.vertices = triangle.vertices.map(|vertex| vertices.number(vertex as usize));
+        if let Some(corners) = triangle.normals {
+            let is_smooth = corners.iter().all(|&corner| normals[corner as usize] != DVec3::ZERO);
+            flattened += usize::from(!is_smooth);
+            triangle.normals = is_smooth.then(|| corners.map(|corner| kept.number(corner as usize)));
+        }
+    }
+    // Each old list goes as soon as its new one is there.
+    normals = kept.used().map(|normal| normals[normal]).collect();
+    let colours = colours.usable().map_or_else(Vec::new, |all| vertices.used().map(|vertex| all[vertex]).collect());
+    positions = vertices.used().map(|vertex| positions[vertex]).collect();
+    (Mesh { positions, colours, normals, triangles, uvs, coordinates, materials, libraries }, flattened)
 }
 
-/// The texture coordinates of each triangle; none at all where no triangle has any.
-fn texture_coordinates(parsed: &tobj::Mesh, faces: &Faces) -> Vec<Option<[DVec2; 3]>> {
-    if !faces.runs.iter().any(|run| run.textured) {
-        return Vec::new();
-    }
-    let coordinates = parsed.texcoords.as_chunks().0;
-    let corners = parsed.texcoord_indices.as_chunks().0;
-    let tags = faces.runs.iter().flat_map(|run| iter::repeat_n(run.textured, run.triangles));
-    let of = |corners: &[u32; 3]| corners.map(|corner| DVec2::from_array(coordinates[corner as usize]));
-    iter::zip(corners, tags).map(|(corners, textured)| textured.then(|| of(corners))).collect()
+/// The vector of length 1 in a direction; zero for none.
+fn unit(normal: DVec3) -> DVec3 {
+    // Scaled first: the square of a tiny or huge length is not a number to divide by.
+    let scale = normal.abs().max_element();
+    if scale > 0.0 { (normal / scale).normalize() } else { DVec3::ZERO }
 }
 
 impl Mesh {
-    /// Leaves out the texture coordinates of triangles whose material has no texture, and warns of triangles that have a
-    /// texture and do not say where. `file` is the OBJ.
-    pub(super) fn keep_textured(&mut self, materials: &[Material], file: &str, warnings: &mut Vec<Warning>) {
+    /// The texture coordinates of each triangle whose material has a texture; none at all where no triangle has any. Warns
+    /// of triangles that have a texture and do not say where. `file` is the OBJ.
+    pub(super) fn textured(
+        &self,
+        materials: &[Material],
+        file: &str,
+        warnings: &mut Vec<Warning>,
+    ) -> Vec<Option<[DVec2; 3]>> {
         let has_texture = |triangle: &Triangle| materials[triangle.material as usize].texture.is_some();
+        let of = |corners: &[u32; 3]| corners.map(|corner| self.coordinates[corner as usize]);
+        let uvs = self.uvs.iter().chain(iter::repeat(&UNPLACED));
+        let uvs = iter::zip(&self.triangles, uvs)
+            .map(|(triangle, corners)| (*corners != UNPLACED && has_texture(triangle)).then(|| of(corners)));
         let textured = self.triangles.iter().filter(|triangle| has_texture(triangle)).count();
-        for (triangle, uv) in iter::zip(&self.triangles, &mut self.uvs) {
-            *uv = uv.filter(|_| has_texture(triangle));
-        }
-        let placed = self.uvs.iter().flatten().count();
-        if placed == 0 {
-            self.uvs = Vec::new();
-        }
+        let placed = uvs.clone().flatten().count();
         if placed < textured {
             let bare = textured - placed;
             let message = format!("triangles without texture coordinates, drawn without their texture: {bare}");
             warnings.push(Warning::file(file, message));
         }
-    }
-}
-
-/// Unit normals, of which only those in use are kept.
-struct Normals {
-    /// Of every normal of the file; `None` where the length is zero.
-    units: Vec<Option<DVec3>>,
-    /// Where in `kept` it is.
-    places: Vec<Option<u32>>,
-    kept: Vec<DVec3>,
-}
-
-impl Normals {
-    fn new(components: &[f64]) -> Self {
-        let unit = |&n: &[f64; 3]| {
-            let n = DVec3::from_array(n);
-            // Scaled first: the square of a tiny or huge length is not a number to divide by.
-            let scale = n.abs().max_element();
-            (scale > 0.0).then(|| (n / scale).normalize())
-        };
-        let units: Vec<_> = components.as_chunks().0.iter().map(unit).collect();
-        Self { places: vec![None; units.len()], units, kept: Vec::new() }
-    }
-
-    /// Keeps the normals of a triangle, unless one has no direction.
-    fn keep(&mut self, corners: [u32; 3]) -> Option<[u32; 3]> {
-        let mut units = [DVec3::ZERO; 3];
-        for (unit, corner) in iter::zip(&mut units, corners) {
-            *unit = (*self.units.get(corner as usize)?)?;
-        }
-        let mut out = [0; 3];
-        for (i, corner) in corners.into_iter().enumerate() {
-            let place = &mut self.places[corner as usize];
-            out[i] = *place.get_or_insert_with(|| {
-                self.kept.push(units[i]);
-                self.kept.len() as u32 - 1
-            });
-        }
-        Some(out)
+        if placed == 0 { Vec::new() } else { uvs.collect() }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
     use crate::import::Embedded;
+    use crate::model::Texture;
 
     fn mesh(text: &str) -> (Mesh, Vec<String>) {
         let files = [("x.obj", text.as_bytes())];
@@ -212,11 +155,66 @@ mod tests {
         assert!(warnings.is_empty());
     }
 
+    /// `tobj` splits meshes at groups and materials, and makes up what a corner lacks: of files without these it reads the same.
+    #[test]
+    fn faces_are_what_another_parser_reads() {
+        let mut state = 1u64;
+        let mut below = |end: u64| {
+            state = state.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
+            (state >> 33) % end
+        };
+        for round in 0..64 {
+            let (mut text, mut counts) = (String::new(), [0; 3]);
+            for _ in 0..60 {
+                let mut numbers = || (below(2001) as f64 - 1000.5) / 16.0;
+                let [x, y, z] = [numbers(), numbers(), numbers()];
+                text += &format!("v {x} {y} {z}\nvt {y:e} {z:e}\nvn {z} {x} {y}\n");
+                counts = counts.map(|count| count + 1);
+                if counts[0] < 6 {
+                    continue;
+                }
+                let mut place = |list: usize| match below(2) {
+                    0 => 1 + below(counts[list]) as i64,
+                    _ => -1 - below(counts[list]) as i64,
+                };
+                let corners = (0..3 + round % 4).map(|_| match round % 3 {
+                    0 => format!(" {}", place(0)),
+                    1 => format!(" {}//{}", place(0), place(2)),
+                    _ => format!(" {}/{}/{}", place(0), place(1), place(2)),
+                });
+                text += &format!("f{}\n", corners.collect::<String>());
+            }
+            let (ours, _) = mesh(&text);
+            let options = tobj::LoadOptions { triangulate: true, ..Default::default() };
+            let theirs = tobj::load_obj_buf(&mut text.as_bytes(), &options, |_| Ok(Default::default())).unwrap();
+            let theirs = &theirs.0[0].mesh;
+            let triple = |all: &[f64], place: u32| DVec3::from_slice(&all[3 * place as usize..]);
+            assert_eq!(ours.triangles.len() * 3, theirs.indices.len());
+            for (i, triangle) in ours.triangles.iter().enumerate() {
+                for corner in 0..3 {
+                    let at = 3 * i + corner;
+                    let position = ours.positions[triangle.vertices[corner] as usize];
+                    assert_eq!(position, triple(&theirs.positions, theirs.indices[at]));
+                    if let Some(normals) = triangle.normals {
+                        let normal = triple(&theirs.normals, theirs.normal_indices[at]).normalize();
+                        assert!((ours.normals[normals[corner] as usize] - normal).length() < 1e-12);
+                    }
+                    if let Some(uvs) = ours.uvs.get(i) {
+                        let uv = &theirs.texcoords[2 * theirs.texcoord_indices[at] as usize..];
+                        assert_eq!(ours.coordinates[uvs[corner] as usize], DVec2::from_slice(uv));
+                    }
+                }
+            }
+            assert_eq!(ours.triangles.iter().all(|t| t.normals.is_some()), round % 3 > 0);
+            assert_eq!(ours.uvs.len(), if round % 3 > 1 { ours.triangles.len() } else { 0 });
+        }
+    }
+
     #[test]
     fn weights_of_vertices_are_ignored() {
         let (mesh, warnings) = mesh("v 0 0 0 2\nv 4 0 0 0.5 # c\nv 2 1 0\nv 3 0 1 1 1\nf 1 2 3\nf 1 2 4 # 9");
         assert_eq!(corners(&mesh), [[0.0, 4.0, 2.0], [0.0, 4.0, 3.0]]);
-        assert!(warnings.is_empty() && mesh.colours.is_empty() && mesh.uvs.is_empty());
+        assert!(warnings.is_empty() && mesh.colours.is_empty());
     }
 
     #[test]
@@ -238,11 +236,20 @@ mod tests {
 
     #[test]
     fn texture_coordinates_are_those_of_the_corners() {
-        let text =
-            FIVE.to_owned() + "vt 0.5\nvt 1 2\nvt -3 4 5\nf 1 2 3\nf 1/3 2/2 3/1\nf 1/1 2/1 3\nf 3/-1 4/-2 5/-3\n";
+        let text = FIVE.to_owned()
+            + "vt 0.5\nvt 1 2\nvt -3 4 5\nf 1 2 3\nf 1/3 2/2 3/1\nf 1/1 2/1 3\nf 3/-1 4/-2 5/-3\nf 1 2 3\n";
         let (mesh, _) = mesh(&text);
         let [a, b, c] = [[0.5, 0.0], [1.0, 2.0], [-3.0, 4.0]].map(DVec2::from_array);
-        assert_eq!(mesh.uvs, [None, Some([c, b, a]), None, Some([c, b, a])]);
+        let picture = Texture { size: [1, 1], texels: vec![[0; 3]] };
+        let textured = Material { texture: Some(Arc::new(picture)), ..Material::default() };
+        let mut warnings = Vec::new();
+        let uvs = mesh.textured(&[textured], "x", &mut warnings);
+        assert_eq!(uvs, [None, Some([c, b, a]), None, Some([c, b, a]), None]);
+        assert_eq!(
+            warnings.iter().map(Warning::to_string).collect::<Vec<_>>(),
+            ["x: triangles without texture coordinates, drawn without their texture: 3"]
+        );
+        assert_eq!(mesh.textured(&[Material::default()], "x", &mut Vec::new()), []);
     }
 
     #[test]

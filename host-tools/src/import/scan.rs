@@ -1,67 +1,66 @@
-//! The check of every statement of an OBJ file, on its way to `tobj`, and what it notes in passing.
+//! The check of every statement of an OBJ file, and what they say: lists, and faces as fans of triangles by their places there.
+//!
+//! A fault is told with its line. What is kept of a file is what a scene is made of, in its final size: a large one is most of the
+//! memory that preparing it takes.
 
 use std::collections::{BTreeMap, HashMap};
 use std::num::IntErrorKind;
 
+use glam::{DVec2, DVec3};
+
 use super::LARGEST;
 use super::error::{ImportError, excerpt};
-use super::lines::{Check, Lines, Statement, number};
+use super::lines::{Lines, Statement, number};
+use crate::model::Triangle;
 
-/// The check of an OBJ file on its way to `tobj`.
-pub(super) struct ObjCheck<'a> {
-    pub lines: Lines<'a>,
-    pub faces: Faces,
-}
-
-impl Check for ObjCheck<'_> {
-    fn next(&mut self, out: &mut String) -> Result<(), ImportError> {
-        while out.is_empty() {
-            let Some(statement) = self.lines.next()? else {
-                return self.finish();
-            };
-            let line = statement.line;
-            let checked = self.faces.statement(&statement, out);
-            checked.map_err(|message| self.error(line, message))?;
-        }
-        Ok(())
+/// Reads the statements of a file, and checks them.
+pub(super) fn scan(mut lines: Lines<'_>) -> Result<Faces, ImportError> {
+    let mut faces = Faces::default();
+    while let Some(statement) = lines.next()? {
+        let line = statement.line;
+        let checked = faces.statement(&statement);
+        checked.map_err(|message| ImportError::line(&lines.file, line, message))?;
     }
-}
-
-impl ObjCheck<'_> {
-    /// What can be said at the end of the file only.
-    fn finish(&self) -> Result<(), ImportError> {
-        let file = || self.lines.file.clone();
-        if self.lines.is_empty() {
-            return Err(ImportError::Empty { file: file() });
-        }
-        self.faces.references().map_err(|(line, message)| self.error(line, message))?;
-        if self.faces.runs.is_empty() {
-            return Err(ImportError::NoFaces { file: file() });
-        }
-        Ok(())
+    if lines.is_empty() {
+        return Err(ImportError::Empty { file: lines.file });
     }
-
-    fn error(&self, line: u64, message: String) -> ImportError {
-        ImportError::line(&self.lines.file, line, message)
+    faces.references().map_err(|(line, message)| ImportError::line(&lines.file, line, message))?;
+    if faces.triangles.is_empty() {
+        return Err(ImportError::NoFaces { file: lines.file });
     }
+    Ok(faces)
 }
 
 /// The three lists that a corner `v/vt/vn` indexes, in that order.
 const LISTS: [&str; 3] = ["vertex", "texture coordinate", "normal"];
 
+/// Of a corner, its place in each of the [`LISTS`].
+type Corner = [Option<u32>; 3];
+
+/// The places of a triangle without texture coordinates.
+pub(super) const UNPLACED: [u32; 3] = [u32::MAX; 3];
+
 /// What the statements so far have said.
 #[derive(Default)]
 pub(super) struct Faces {
-    /// How many of each of the [`LISTS`] there are.
-    counts: [u64; 3],
-    /// The largest index into each, and its line. A face may stand before its vertices.
+    /// The vertices.
+    pub positions: Vec<DVec3>,
+    /// The texture coordinates.
+    pub coordinates: Vec<DVec2>,
+    /// The normals, of any length.
+    pub normals: Vec<DVec3>,
+    /// The largest index into each of the [`LISTS`], and its line. A face may stand before its vertices.
     furthest: [(u64, u64); 3],
-    /// The triangles, in file order.
-    pub runs: Vec<Run>,
-    triangles: usize,
+    /// Fans of the faces, in file order, by places in the lists; with normals where all corners of the face have one. Their
+    /// materials are places in `materials`.
+    pub triangles: Vec<Triangle>,
+    /// The places of their texture coordinates, or [`UNPLACED`]; not of all, where the last have none.
+    pub uvs: Vec<[u32; 3]>,
+    /// The corners of the last face, whose memory is used again.
+    corners: Vec<Corner>,
     /// The `usemtl` in force, and its index in `materials` once a face has used it.
     current: (Named, Option<u32>),
-    /// The materials of the runs, in order of first use.
+    /// The materials of the faces, in order of first use.
     pub materials: Vec<Named>,
     known: HashMap<String, u32>,
     /// The arguments of `mtllib`.
@@ -72,19 +71,35 @@ pub(super) struct Faces {
     pub ignored: BTreeMap<String, u64>,
 }
 
-/// Whether vertices have colours: the first one decides for all, since `tobj` asks for a colour of each or of none.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// The colours of vertices: the first vertex decides for all whether there are any.
+#[derive(Default)]
 pub(super) struct Colours {
     /// Whether the first vertex has one; `None` before there was a vertex.
-    are_passed_on: Option<bool>,
+    are_given: Option<bool>,
+    /// One for each vertex, where they are given.
+    all: Vec<DVec3>,
     /// The line of the first that is not from 0 to 1, or that comes after vertices without one.
     pub unusable: Option<u64>,
 }
 
 impl Colours {
-    /// Whether what was passed on are the colours of all vertices.
-    pub(super) fn are_usable(self) -> bool {
-        self.are_passed_on == Some(true) && self.unusable.is_none()
+    /// Takes note of a vertex.
+    fn vertex(&mut self, words: &[&str], line: u64) {
+        let given = words.get(3..6);
+        let share = |word: &str| number(word).ok().filter(|share| (0.0..=1.0).contains(share));
+        let colour = given.and_then(|c| Some(DVec3::new(share(c[0])?, share(c[1])?, share(c[2])?)));
+        let are_given = *self.are_given.get_or_insert(colour.is_some());
+        if given.is_some() && (colour.is_none() || !are_given) {
+            self.unusable.get_or_insert(line);
+        }
+        if are_given {
+            self.all.push(colour.unwrap_or(DVec3::ONE));
+        }
+    }
+
+    /// The colour of each vertex; `None` where there are none that can be used.
+    pub(super) fn usable(&self) -> Option<&[DVec3]> {
+        (self.are_given == Some(true) && self.unusable.is_none()).then_some(&self.all)
     }
 }
 
@@ -97,48 +112,27 @@ pub(super) struct Named {
     pub line: u64,
 }
 
-/// Consecutive triangles that are alike.
-pub(super) struct Run {
-    pub triangles: usize,
-    /// Index into [`Faces::materials`].
-    pub material: u32,
-    /// Whether all their corners have a normal.
-    pub smooth: bool,
-    /// Whether all their corners have texture coordinates.
-    pub textured: bool,
-}
-
 impl Faces {
-    /// Takes note of a statement, and appends it to `out` if it is one for `tobj`.
+    /// How many of each of the [`LISTS`] there are.
+    fn counts(&self) -> [usize; 3] {
+        [self.positions.len(), self.coordinates.len(), self.normals.len()]
+    }
+
+    /// Takes note of a statement.
     ///
     /// # Errors
     /// Says what is wrong with it.
-    fn statement(&mut self, statement: &Statement<'_>, out: &mut String) -> Result<(), String> {
+    fn statement(&mut self, statement: &Statement<'_>) -> Result<(), String> {
         let words: Vec<&str> = statement.words().collect();
         match statement.keyword() {
             "v" => {
-                numbers(&words, 3, LARGEST)?;
-                self.counts[0] += 1;
-                // Beyond x, y and z comes a weight, of which `tobj` would make use, or a colour.
-                match self.colour(&words, statement.line) {
-                    Some(colour) => pass("v", &[&words[..3], &colour].concat(), out),
-                    None => pass("v", &words[..3], out),
-                }
+                // Beyond x, y and z comes a weight, which says nothing here, or a colour.
+                self.positions.push(numbers(&words, 3, LARGEST)?.into());
+                self.colours.vertex(&words, statement.line);
             }
-            "vt" => {
-                numbers(&words, 1, f64::MAX)?;
-                self.counts[1] += 1;
-                pass("vt", &[words[0], words.get(1).unwrap_or(&"0")], out);
-            }
-            "vn" => {
-                numbers(&words, 3, f64::MAX)?;
-                self.counts[2] += 1;
-                pass("vn", &words[..3], out);
-            }
-            "f" => {
-                self.face(&words, statement.line)?;
-                pass("f", &words, out);
-            }
+            "vt" => self.coordinates.push(numbers(&words, 1, f64::MAX)?.into()),
+            "vn" => self.normals.push(numbers(&words, 3, f64::MAX)?.into()),
+            "f" => self.face(&words, statement.line)?,
             "usemtl" => {
                 let named = Named { name: statement.name().into(), line: statement.line };
                 self.current = (named, None);
@@ -158,47 +152,38 @@ impl Faces {
         Ok(())
     }
 
-    /// The colour of a vertex for `tobj`, where all of the file have one.
-    fn colour<'w>(&mut self, words: &[&'w str], line: u64) -> Option<[&'w str; 3]> {
-        let given = words.get(3..6).map(|colour| [colour[0], colour[1], colour[2]]);
-        let is_share = |word: &str| number(word).is_ok_and(|share| (0.0..=1.0).contains(&share));
-        let colour = given.filter(|words| words.iter().all(|word| is_share(word)));
-        let are_passed_on = *self.colours.are_passed_on.get_or_insert(colour.is_some());
-        if given.is_some() && (colour.is_none() || !are_passed_on) {
-            self.colours.unusable.get_or_insert(line);
+    /// A face as a fan: corners (0, i, i + 1).
+    fn face(&mut self, words: &[&str], line: u64) -> Result<(), String> {
+        if words.len() < 3 {
+            return Err(format!("a face of {} corners; it needs at least 3", words.len()));
         }
-        are_passed_on.then(|| colour.unwrap_or(["1"; 3]))
-    }
-
-    fn face(&mut self, corners: &[&str], line: u64) -> Result<(), String> {
-        if corners.len() < 3 {
-            return Err(format!("a face of {} corners; it needs at least 3", corners.len()));
+        let mut corners = std::mem::take(&mut self.corners);
+        corners.clear();
+        for word in words {
+            corners.push(self.corner(word, line)?);
         }
-        let (mut smooth, mut textured) = (true, true);
-        for corner in corners {
-            let [_, has_texture, has_normal] = self.corner(corner, line)?;
-            smooth &= has_normal;
-            textured &= has_texture;
-        }
-        let triangles = corners.len() - 2;
-        self.triangles += triangles;
         // Three corners a triangle are numbered in 32 bits.
-        if self.triangles > u32::MAX as usize / 3 {
+        if self.triangles.len() + words.len() - 2 > u32::MAX as usize / 3 {
             return Err("more triangles than 32-bit indices can number".into());
         }
         let material = self.material();
-        match self.runs.last_mut() {
-            Some(run) if run.material == material && run.smooth == smooth && run.textured == textured => {
-                run.triangles += triangles;
+        let [textured, smooth] = [1, 2].map(|list| corners.iter().all(|corner| corner[list].is_some()));
+        for pair in corners[1..].windows(2) {
+            let places = |list: usize| [corners[0], pair[0], pair[1]].map(|corner| corner[list].unwrap_or(u32::MAX));
+            if textured {
+                self.uvs.resize(self.triangles.len(), UNPLACED);
+                self.uvs.push(places(1));
             }
-            _ => self.runs.push(Run { triangles, material, smooth, textured }),
+            self.triangles.push(Triangle { vertices: places(0), normals: smooth.then(|| places(2)), material });
         }
+        self.corners = corners;
         Ok(())
     }
 
-    /// Checks `v`, `v/vt`, `v//vn` or `v/vt/vn`; which of them it has.
-    fn corner(&mut self, corner: &str, line: u64) -> Result<[bool; 3], String> {
-        let mut given = [false; 3];
+    /// Checks `v`, `v/vt`, `v//vn` or `v/vt/vn`; what it refers to.
+    fn corner(&mut self, corner: &str, line: u64) -> Result<Corner, String> {
+        let mut given = [None; 3];
+        let counts = self.counts();
         for (list, word) in corner.split('/').enumerate() {
             let Some(name) = LISTS.get(list) else {
                 return Err(format!("`{}` is not v, v/vt, v//vn or v/vt/vn", excerpt(corner)));
@@ -212,8 +197,8 @@ impl Faces {
                 }
                 _ => format!("{name} index `{}` is not an integer", excerpt(word)),
             })?;
-            let count = self.counts[list];
-            match index {
+            let count = counts[list] as u64;
+            let place = match index {
                 0 => {
                     return Err(format!("{name} index 0; indices count from 1, or back from -1"));
                 }
@@ -222,13 +207,15 @@ impl Faces {
                     if index as u64 > furthest.0 {
                         *furthest = (index as u64, line);
                     }
+                    index as u64 - 1
                 }
                 _ if index.unsigned_abs() > count => {
                     return Err(format!("{name} index {index}, but there are {count} before it"));
                 }
-                _ => {}
-            }
-            given[list] = true;
+                _ => count - index.unsigned_abs(),
+            };
+            // What is more than a list holds is refused at the end of the file.
+            given[list] = Some(place.min(u32::MAX.into()) as u32);
         }
         Ok(given)
     }
@@ -246,37 +233,35 @@ impl Faces {
 
     /// Checks that what was referred to is there. The error is a line and a message.
     fn references(&self) -> Result<(), (u64, String)> {
-        for (list, name) in LISTS.iter().enumerate() {
-            let ((index, line), count) = (self.furthest[list], self.counts[list]);
-            if index > count {
+        for ((name, (index, line)), count) in LISTS.into_iter().zip(self.furthest).zip(self.counts()) {
+            if index > count as u64 {
                 return Err((line, format!("{name} index {index}, but the file has {count}")));
+            }
+            if index > u64::from(u32::MAX) {
+                return Err((line, format!("{name} index {index}, which is beyond 32 bits")));
             }
         }
         Ok(())
     }
 }
 
-/// Checks that there are enough words, and that all are finite numbers of at most `largest`.
-fn numbers(words: &[&str], least: usize, largest: f64) -> Result<(), String> {
+/// The first `N` of some numbers, 0 for those that are not there; checks that there are enough words, and that all are finite
+/// numbers of at most `largest`.
+fn numbers<const N: usize>(words: &[&str], least: usize, largest: f64) -> Result<[f64; N], String> {
     if words.len() < least {
         return Err(format!("too few numbers: {} of at least {least}", words.len()));
     }
-    for word in words {
-        if number(word)?.abs() > largest {
+    let mut numbers = [0.0; N];
+    for (place, word) in words.iter().enumerate() {
+        let number = number(word)?;
+        if number.abs() > largest {
             return Err(format!("`{}` is beyond {largest:e}", excerpt(word)));
         }
+        if let Some(slot) = numbers.get_mut(place) {
+            *slot = number;
+        }
     }
-    Ok(())
-}
-
-/// Writes a statement for `tobj`.
-fn pass(keyword: &str, words: &[&str], out: &mut String) {
-    out.push_str(keyword);
-    for word in words {
-        out.push(' ');
-        out.push_str(word);
-    }
-    out.push('\n');
+    Ok(numbers)
 }
 
 #[cfg(test)]
@@ -289,15 +274,9 @@ mod tests {
         let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\n{line}\nf 1 2 3\n");
         let files = [("x", text.as_bytes())];
         let source = Embedded(&files);
-        let lines = Lines::open(&source, "x").unwrap();
-        let mut check = ObjCheck { lines, faces: Faces::default() };
-        loop {
-            let mut out = String::new();
-            match check.next(&mut out) {
-                Err(error) => return error.to_string().replace("built-in x:5: ", ""),
-                Ok(()) if out.is_empty() => return "good".into(),
-                Ok(()) => {}
-            }
+        match scan(Lines::open(&source, "x").unwrap()) {
+            Err(error) => error.to_string().replace("built-in x:5: ", ""),
+            Ok(_) => "good".into(),
         }
     }
 
