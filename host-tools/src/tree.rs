@@ -75,12 +75,19 @@ pub struct Tree {
 #[derive(Clone, Copy, Debug)]
 struct Item {
     bounds: Bounds,
-    index: u32,
-    is_sphere: bool,
+    /// Its number, and [`Item::SPHERE`] for a sphere: there are fewer than [`Child::INDEX_END`].
+    number: u32,
 }
 
 impl Item {
+    const SPHERE: u32 = 1 << 31;
+
+    fn is_sphere(&self) -> bool {
+        self.number & Self::SPHERE != 0
+    }
+
     /// Twice the centre of its box along an axis.
+    #[inline(always)]
     fn centre_2x(&self, axis: usize) -> i32 {
         self.bounds.low[axis] + self.bounds.high[axis]
     }
@@ -100,20 +107,24 @@ pub fn build_mixed(
     spheres: impl Iterator<Item = Bounds>,
     options: TreeOptions,
 ) -> Tree {
-    let kinds = triangles.map(|bounds| (bounds, false)).chain(spheres.map(|bounds| (bounds, true)));
-    let item = |(index, (bounds, is_sphere))| Item { bounds, index, is_sphere };
+    let kinds = triangles.map(|bounds| (bounds, 0)).chain(spheres.map(|bounds| (bounds, Item::SPHERE)));
+    let item = |(number, (bounds, kind)): (u32, _)| Item { bounds, number: number | kind };
     let mut items: Vec<Item> = (0..).zip(kinds).map(item).collect();
     let mut nodes = Vec::new();
-    let triangles = items.iter().filter(|item| !item.is_sphere).count() as u32;
+    let triangles = items.len() as u32 - self::spheres(&items);
     let root = subtree(&mut items, [0, triangles], 0, options, &mut nodes);
-    let (spheres, triangles): (Vec<Item>, Vec<Item>) = items.into_iter().partition(|item| item.is_sphere);
-    let order = triangles.into_iter().chain(spheres).map(|item| item.index).collect();
+    nodes.shrink_to_fit();
+    let mut order = Vec::with_capacity(items.len());
+    for is_sphere in [false, true] {
+        let kind = items.iter().filter(|item| item.is_sphere() == is_sphere);
+        order.extend(kind.map(|item| item.number & !Item::SPHERE));
+    }
     Tree { root: root.packed, nodes, order, depth: root.levels }
 }
 
 /// How many spheres there are.
 fn spheres(items: &[Item]) -> u32 {
-    items.iter().filter(|item| item.is_sphere).count() as u32
+    items.iter().filter(|item| item.is_sphere()).count() as u32
 }
 
 /// Below this, threads cost more than they bring.
@@ -129,9 +140,10 @@ struct Subtree {
 
 /// Appends the nodes of a subtree over items whose triangles and spheres stand from the places `first` on. Recursion is at most [`MAX_DEPTH`] deep.
 fn subtree(items: &mut [Item], first: [u32; 2], level: u32, options: TreeOptions, nodes: &mut Vec<Node>) -> Subtree {
-    let bounds = union(items.iter().map(|item| item.bounds));
+    let mut bounds = Bounds::NOTHING;
+    items.iter().for_each(|item| grow(&mut bounds, &item.bounds));
     let Some(middle) = split(items, &bounds, level, options) else {
-        let kind = usize::from(items.iter().any(|item| item.is_sphere));
+        let kind = usize::from(items.iter().any(Item::is_sphere));
         let leaf = Child::Leaf { first: first[kind], count: items.len() as u32 };
         let bounds = options.leaf_growth.map_or(bounds, |growth| growth.of(bounds));
         return Subtree { packed: leaf.pack(), bounds, levels: 0 };
@@ -190,7 +202,7 @@ fn split(items: &mut [Item], bounds: &Bounds, level: u32, options: TreeOptions) 
         }
         _ if fits_leaf => None,
         _ if by_kind => {
-            items.sort_by_key(|item| item.is_sphere);
+            items.sort_by_key(Item::is_sphere);
             Some((count - spheres) as usize)
         }
         // No split separates them, or there is no time left for one.
@@ -198,8 +210,11 @@ fn split(items: &mut [Item], bounds: &Bounds, level: u32, options: TreeOptions) 
     }
 }
 
-/// The box of boxes; empty for none.
-fn union(boxes: impl Iterator<Item = Bounds>) -> Bounds {
-    let empty = Bounds { low: [i32::MAX; 3], high: [i32::MIN; 3] };
-    boxes.fold(empty, |a, b| a.union(&b))
+/// Makes a box hold another. [`Bounds::union`] is a call, which these loops would spend their time on.
+#[inline(always)]
+fn grow(all: &mut Bounds, other: &Bounds) {
+    for axis in 0..3 {
+        all.low[axis] = all.low[axis].min(other.low[axis]);
+        all.high[axis] = all.high[axis].max(other.high[axis]);
+    }
 }
