@@ -13,7 +13,7 @@ use core_rt::scene::Scene;
 use exact_simd::{ByEights, Eights, Tree};
 use float_rt::{Float32, Float64};
 
-use crate::grid::{Grid, GridError};
+use crate::grid::Grid;
 use crate::model::Model;
 use crate::needs::{self, Asked};
 use crate::planes::engine::Planes12;
@@ -33,11 +33,11 @@ pub trait Engine: Sync + std::fmt::Debug {
     fn grid_bits(&self) -> u32;
     /// The least radius of a sphere, grid units.
     fn radius_min(&self) -> i32;
-    /// The finest grid that it has for a model.
+    /// The grid that it has for a model, the finest or one of so many bits.
     ///
     /// # Errors
     /// Where it has none.
-    fn grid(&self, model: &Model) -> Result<Grid, GridError>;
+    fn grid(&self, model: &Model, bits: Option<u32>) -> Result<Grid, PrepareError>;
     /// A model as a blob.
     ///
     /// # Errors
@@ -169,8 +169,8 @@ impl<K: Lanes + std::fmt::Debug> Engine for Of<K> {
         K::RADIUS_MIN
     }
 
-    fn grid(&self, model: &Model) -> Result<Grid, GridError> {
-        Grid::fit::<K>(model)
+    fn grid(&self, model: &Model, bits: Option<u32>) -> Result<Grid, PrepareError> {
+        prepare::grid::<K>(model, bits)
     }
 
     fn prepare(&self, model: &Model, options: &Options) -> Result<Prepared, PrepareError> {

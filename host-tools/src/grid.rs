@@ -143,8 +143,13 @@ impl Snapped<'_> {
         self.triangles[id as usize].vertices.map(|v| self.positions[v as usize])
     }
 
+    /// How many triangles there are.
+    pub(crate) fn len(&self) -> usize {
+        self.triangles.len()
+    }
+
     /// The corners of every triangle, in file order.
-    pub fn iter(&self) -> impl Iterator<Item = Vertices> {
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = Vertices> {
         (0..self.triangles.len() as u32).map(|id| self.corners(id))
     }
 }

@@ -3,6 +3,7 @@
 //! Whatever the device will use is made by the device's own integer code; f64 ends at the grid.
 
 mod camera;
+mod examiner;
 mod header;
 mod layers;
 mod layout;
@@ -12,6 +13,7 @@ mod paint;
 mod shared;
 mod survey;
 
+pub use examiner::Examiner;
 pub(crate) use header::transfer;
 pub use layout::Blob;
 pub use loss::{Keeper, Loss, losses};
@@ -183,6 +185,18 @@ pub struct Prepared {
     pub grid: Grid,
 }
 
+/// The grid that a kernel has for a model, of as many bits as [`Options::grid_bits`] says.
+///
+/// # Errors
+/// Where it has none.
+pub fn grid<K: Kernel>(model: &Model, grid_bits: Option<u32>) -> Result<Grid, PrepareError> {
+    let asked = grid_bits.unwrap_or(K::GRID_BITS);
+    if !(LEAST_BITS..=K::GRID_BITS).contains(&asked) {
+        return Err(PrepareError::GridBits { asked, most: K::GRID_BITS, kernel: K::NAME });
+    }
+    Ok(Grid::fit_to::<K>(model, asked)?)
+}
+
 /// Prepares a model for a kernel.
 ///
 /// # Errors
@@ -196,11 +210,7 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
     if used.len() > K::MATERIALS_MAX as usize + 1 {
         return Err(PrepareError::TooManyMaterials { found: used.len(), most: K::MATERIALS_MAX + 1, kernel: K::NAME });
     }
-    let grid_bits = options.grid_bits.unwrap_or(K::GRID_BITS);
-    if !(LEAST_BITS..=K::GRID_BITS).contains(&grid_bits) {
-        return Err(PrepareError::GridBits { asked: grid_bits, most: K::GRID_BITS, kernel: K::NAME });
-    }
-    let grid = Grid::fit_to::<K>(model, grid_bits)?;
+    let grid = grid::<K>(model, options.grid_bits)?;
     let snapped = grid.snap(model);
     let (ids, mut degenerates) = with_area(&snapped);
     let balls = with_room::<K>(model, &grid, &mut degenerates);
@@ -208,9 +218,9 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
         return Err(PrepareError::AllDegenerate {
             triangles: model.triangles.len(),
             spheres: model.spheres.len(),
-            bits: grid_bits,
+            bits: options.grid_bits.unwrap_or(K::GRID_BITS),
             kernel: K::NAME,
-            keeper: loss::keeps_some(grid_bits, model),
+            keeper: loss::keeps_some(options.grid_bits.unwrap_or(K::GRID_BITS), model),
         });
     }
     let Tree { root, nodes, order, depth } = tree::build_mixed(
@@ -218,9 +228,7 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
         balls.iter().map(|(_, ball)| ball.bounds()),
         options.tree,
     );
-    let (of_triangles, of_spheres) = order.split_at(ids.len());
-    let ids: Vec<u32> = of_triangles.iter().map(|&place| ids[place as usize]).collect();
-    let balls: Vec<(u32, Ball)> = of_spheres.iter().map(|&place| balls[place as usize - ids.len()]).collect();
+    let (ids, balls) = in_order(ids, balls, order);
     let refused = || PrepareError::Knobs { ranges: K::KNOBS, kernel: K::NAME };
     let arithmetic = K::settle(&options.knobs, ids.iter().map(|&id| snapped.corners(id))).ok_or_else(refused)?;
     let settings = K::settings(&arithmetic).ok_or_else(refused)?;
@@ -262,7 +270,7 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
             depth,
             arithmetic,
             material_bits,
-            nodes: nodes.iter().map(|node| K::node(node.boxes, node.children)),
+            nodes: nodes.into_iter().map(|node| K::node(node.boxes, node.children)),
             triangles: with_record.iter().map(triangle),
             shared,
             spheres: balls.iter().map(sphere),
@@ -280,6 +288,14 @@ pub fn prepare<K: Kernel>(model: &Model, options: &Options) -> Result<Prepared, 
         },
     )?;
     Ok(Prepared { blob, degenerates, grid })
+}
+
+/// The triangles and the spheres in the order of the tree, for the memory of those in their old one.
+fn in_order(ids: Vec<u32>, balls: Vec<(u32, Ball)>, mut order: Vec<u32>) -> (Vec<u32>, Vec<(u32, Ball)>) {
+    let of_spheres = order.split_off(ids.len());
+    let balls = of_spheres.iter().map(|&place| balls[place as usize - ids.len()]).collect();
+    order.iter_mut().for_each(|place| *place = ids[*place as usize]);
+    (order, balls)
 }
 
 /// The bits of a record's material number that materials take, where triangles' ids have room beside them: these then take no
@@ -319,7 +335,7 @@ fn used_materials(model: &Model) -> (Vec<u32>, Vec<u32>) {
 /// The ids of triangles with area on the grid, and the count of the others.
 fn with_area(snapped: &Snapped<'_>) -> (Vec<u32>, Degenerates) {
     let mut degenerates = Degenerates::default();
-    let mut ids = Vec::new();
+    let mut ids = Vec::with_capacity(snapped.len());
     for (id, corners) in (0..).zip(snapped.iter()) {
         let [a, b, c] = corners;
         if survey::has_area(corners) {

@@ -201,7 +201,7 @@ mod tests {
                     moved.render.size = size;
                     moved.lights[0].kind = LightKind::Point(DVec3::from(position) * 0.9);
                     assert!(stage.look(&moved), "{} {position:?}", engine.name());
-                    if engine.grid(&moved).unwrap() == stage.grid() {
+                    if engine.grid(&moved, None).unwrap() == stage.grid() {
                         let expected = engine.render(blob(engine, &moved).bytes(), TILE, &|_| ()).unwrap().picture;
                         assert_eq!(drawn(stage.as_ref(), &moved), expected, "{} {position:?}", engine.name());
                         on_one_grid += 1;

@@ -37,7 +37,7 @@ fn the_kernel_that_is_chosen_will_do() {
             let (last, others) = choice.findings.split_last().expect("there are kernels");
             assert_eq!(last.kernel, choice.engine.name());
             assert!(others.iter().all(|finding| finding.loses || finding.moved > Some(auto::MOST)));
-            let grid = choice.engine.grid(&model).expect("it has one");
+            let grid = choice.engine.grid(&model, None).expect("it has one");
             let (bits, radius) = (choice.engine.grid_bits(), choice.engine.radius_min());
             assert_eq!(losses(choice.engine.name(), bits, radius, &model, &grid), [], "{name}");
             chosen.push(choice.engine.name());

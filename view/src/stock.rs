@@ -75,7 +75,8 @@ impl Stock {
         then: impl FnOnce(&dyn Stage) -> T,
     ) -> Result<T, String> {
         // Where there is none, making a blob says why.
-        let is_ready = engine.grid(model).is_ok_and(|grid| self.fetch(engine, model, |stage| stage.grid() == grid));
+        let is_ready =
+            engine.grid(model, None).is_ok_and(|grid| self.fetch(engine, model, |stage| stage.grid() == grid));
         if !is_ready {
             self.add(engine, model)?;
         }

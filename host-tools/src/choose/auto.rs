@@ -13,7 +13,7 @@ use super::view::View;
 use crate::engine::Engine;
 use crate::grid::Grid;
 use crate::model::Model;
-use crate::prepare::losses;
+use crate::prepare::{Examiner, Loss};
 
 /// The greatest part of a pixel by which corners may be moved: with an edge through every tenth pixel, three of a thousand
 /// are wrong.
@@ -47,6 +47,8 @@ pub struct Choice {
     pub engine: &'static dyn Engine,
     /// What was found, the cheapest kernel first, the chosen one last.
     pub findings: Vec<Finding>,
+    /// What is lost on the finest grid of the chosen one.
+    pub losses: Vec<Loss>,
 }
 
 /// Chooses a kernel for a model. The last of [`CHEAPEST_FIRST`](super::CHEAPEST_FIRST) is chosen where none will do.
@@ -55,39 +57,47 @@ pub struct Choice {
 /// Never: there are kernels to choose from.
 #[must_use]
 pub fn auto(model: &Model) -> Choice {
-    let pixels = pixels(model);
+    let (pixel, examiner) = (pixel(model), Examiner::new(model));
     let mut findings = Vec::new();
-    let mut chosen = engines().next().expect("there are kernels");
+    let mut chosen = (engines().next().expect("there are kernels"), Vec::new());
     for engine in engines() {
-        let finding = find(engine, model, &pixels);
+        let (finding, losses) = find(engine, model, pixel, &examiner);
         findings.push(finding);
-        chosen = engine;
+        chosen = (engine, losses);
         if finding.will_do() {
             break;
         }
     }
-    Choice { engine: chosen, findings }
+    let (engine, losses) = chosen;
+    Choice { engine, findings, losses }
 }
 
-/// The side of a pixel, scene units, at the corners in view; the least first.
-fn pixels(model: &Model) -> Vec<f64> {
+/// The side of a pixel, scene units, at the corners in view, but for the hundredth of them where it is least; `None` where
+/// nothing is in view.
+fn pixel(model: &Model) -> Option<f64> {
     let view = View::of(model);
-    let triangles = model.triangles.iter().map(|t| t.vertices.map(|v| model.positions[v as usize]).to_vec());
+    let mut pixels = Vec::new();
+    for triangle in &model.triangles {
+        pixels.extend(view.pixels_at(triangle.vertices.map(|v| model.positions[v as usize])));
+    }
     let towards = (model.camera.position - model.camera.look_at).normalize();
-    let spheres = model.spheres.iter().map(|sphere| {
+    for sphere in &model.spheres {
         let side = |x: f64, y: f64| sphere.centre + sphere.radius * (towards + DVec3::new(x, y, 0.0));
-        vec![side(0.0, 0.0), side(0.5, 0.0), side(0.0, 0.5)]
-    });
-    let mut pixels: Vec<f64> =
-        triangles.chain(spheres).flat_map(|corners| view.pixels_at(&corners).collect::<Vec<_>>()).collect();
-    pixels.sort_by(f64::total_cmp);
-    pixels
+        pixels.extend(view.pixels_at([side(0.0, 0.0), side(0.5, 0.0), side(0.0, 0.5)]));
+    }
+    let place = pixels.len() / ONE_OF;
+    // Which is there where there are any.
+    (place < pixels.len()).then(|| *pixels.select_nth_unstable_by(place, f64::total_cmp).1)
 }
 
-fn find(engine: &dyn Engine, model: &Model, pixels: &[f64]) -> Finding {
-    let Ok(grid) = engine.grid(model) else { return Finding { kernel: engine.name(), moved: None, loses: true } };
-    let loses = !losses(engine.name(), engine.grid_bits(), engine.radius_min(), model, &grid).is_empty();
-    Finding { kernel: engine.name(), moved: pixels.get(pixels.len() / ONE_OF).map(|pixel| moved(&grid) / pixel), loses }
+fn find(engine: &dyn Engine, model: &Model, pixel: Option<f64>, examiner: &Examiner<'_>) -> (Finding, Vec<Loss>) {
+    let kernel = engine.name();
+    let Ok(grid) = engine.grid(model, None) else {
+        return (Finding { kernel, moved: None, loses: true }, Vec::new());
+    };
+    let losses = examiner.losses(kernel, engine.grid_bits(), engine.radius_min(), &grid);
+    let moved = pixel.map(|pixel| moved(&grid) / pixel);
+    (Finding { kernel, moved, loses: !losses.is_empty() }, losses)
 }
 
 /// How far a grid moves a point at most, scene units: half the diagonal of a cell.

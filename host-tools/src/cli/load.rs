@@ -19,7 +19,7 @@ use crate::import::{self, Imported};
 use crate::model::Model;
 use crate::picture::{SIZES, size_is_allowed};
 use crate::planes;
-use crate::prepare::{Blob, Degenerates, Options, losses, tree_for, unplaced};
+use crate::prepare::{Blob, Degenerates, Loss, Options, losses, tree_for, unplaced};
 use crate::textures;
 use crate::tree::TreeOptions;
 
@@ -87,7 +87,7 @@ impl SceneArguments {
             let closest = tries.last().map_or_else(String::new, |tried| format!("; the closest: {tried}"));
             return Err(Failure::check(format!("{path}: no kernel stays inside the budget{closest}")));
         };
-        self.prepare(&model, engine, &Options { grid_bits: Some(grid_bits), ..self.options() })
+        self.prepare(&model, engine, &Options { grid_bits: Some(grid_bits), ..self.options() }, None)
     }
 
     /// Reads the scene and prepares it, for `default` where neither it nor the user names a kernel.
@@ -115,8 +115,11 @@ impl SceneArguments {
         let model = self.model()?;
         let choice = engine.is_none().then(|| auto(&model));
         let engine = choice.as_ref().map(|choice| choice.engine).or(engine).unwrap_or(ENGINES[0]);
-        let scene = self.prepare(&model, engine, &self.options())?;
-        Ok((Scene { choice: choice.map(|choice| choice.to_string()), ..scene }, Some(model)))
+        let text = choice.as_ref().map(ToString::to_string);
+        // It was chosen by its finest grid.
+        let lost = choice.map(|choice| choice.losses).filter(|_| self.grid_bits.is_none());
+        let scene = self.prepare(&model, engine, &self.options(), lost)?;
+        Ok((Scene { choice: text, ..scene }, Some(model)))
     }
 
     /// Whether the kernel is the one that has no blobs.
@@ -201,8 +204,19 @@ impl SceneArguments {
         Ok(model)
     }
 
-    /// Prepares a model for a kernel.
-    fn prepare(&self, model: &Model, engine: &'static dyn Engine, options: &Options) -> Result<Scene, Failure> {
+    /// Prepares a model for a kernel; `lost` is what is lost on its grid, where that is known.
+    fn prepare(
+        &self,
+        model: &Model,
+        engine: &'static dyn Engine,
+        options: &Options,
+        lost: Option<Vec<Loss>>,
+    ) -> Result<Scene, Failure> {
+        let losses = |grid| {
+            losses(engine.name(), options.grid_bits.unwrap_or(engine.grid_bits()), engine.radius_min(), model, &grid)
+        };
+        // Before there is a blob beside what looking takes. Where there is no grid, preparing says why.
+        let lost = lost.unwrap_or_else(|| engine.grid(model, options.grid_bits).map_or_else(|_| Vec::new(), losses));
         if let Some(what) = unplaced(model) {
             warn(format_args!("{}: {what}", self.scene.display()));
         }
@@ -210,8 +224,7 @@ impl SceneArguments {
             .prepare(model, options)
             .map_err(|error| Failure::input(format!("{}: {error}", self.scene.display())))?;
         warn_of_degenerates(prepared.degenerates, model.triangles.len());
-        let grid_bits = options.grid_bits.unwrap_or(engine.grid_bits());
-        losses(engine.name(), grid_bits, engine.radius_min(), model, &prepared.grid).iter().for_each(warn);
+        lost.iter().for_each(warn);
         Ok(Scene { engine, blob: prepared.blob, degenerates: Some(prepared.degenerates), choice: None })
     }
 

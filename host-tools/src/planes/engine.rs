@@ -25,7 +25,7 @@ use super::stage::Staged;
 use super::trace::Tracer;
 use super::{NAME, Way, blob, light, lookups, picture};
 use crate::engine::{Engine, Sizes};
-use crate::grid::{Grid, GridError};
+use crate::grid::Grid;
 use crate::model::{self, Model};
 use crate::needs::Asked;
 use crate::prepare::{Degenerates, Options, PrepareError, Prepared, transfer};
@@ -97,10 +97,8 @@ impl Engine for Planes12 {
         1
     }
 
-    fn grid(&self, model: &Model) -> Result<Grid, GridError> {
-        // Where it has none, another kernel says why.
-        let planes = Planes::new(model, &Words::default());
-        planes.map(|planes| planes.place()).map_err(|_| GridError::NoExtent)
+    fn grid(&self, model: &Model, _: Option<u32>) -> Result<Grid, PrepareError> {
+        Ok(Planes::new(model, &Words::default())?.place())
     }
 
     fn prepare(&self, model: &Model, _: &Options) -> Result<Prepared, PrepareError> {

@@ -3,8 +3,10 @@
 use core_rt::bvh::Child;
 use core_rt::kernel::Bounds;
 use glam::DVec3;
+use rayon::prelude::*;
 
-use crate::grid::{Grid, Snapped};
+use super::survey::{few, normal};
+use crate::grid::Grid;
 use crate::model::Model;
 use crate::tree::{self, Tree, TreeOptions};
 
@@ -18,36 +20,71 @@ const LOOKED_AT: usize = 64;
 /// Of the largest coordinate: closer than that, surfaces are in one place in the file too.
 const TOGETHER: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// Whether the middle of each triangle lies so close before or behind another, whose corners are none of its own, that a
-/// grid may put it on the other side.
-pub(super) fn merged(model: &Model, grid: &Grid, snapped: &Snapped<'_>) -> Vec<bool> {
-    let corners = |id: u32| model.triangles[id as usize].vertices.map(|v| model.positions[v as usize]);
-    let boxes: Vec<Bounds> = snapped.iter().map(|corners| Bounds::of(&corners)).collect();
-    let largest = model.positions.iter().fold(0.0, |largest: f64, p| largest.max(p.abs().max_element()));
-    let (together, apart) = (largest * TOGETHER, APART / grid.scale);
-    if boxes.is_empty() {
-        return Vec::new();
-    }
-    let tree = tree::build(boxes.into_iter(), TreeOptions::default());
-    (0..model.triangles.len() as u32)
-        .map(|id| {
-            let own = corners(id);
-            let middle = own.iter().sum::<DVec3>() / 3.0;
-            let mut left = LOOKED_AT;
-            around(&tree, grid.place(middle), &mut |other| {
-                let theirs = corners(other);
-                let touches = other == id || own.iter().any(|corner| theirs.contains(corner));
-                left -= 1;
-                let is_over = !touches && height(middle, theirs).is_some_and(|h| h > together && h < apart);
-                (is_over, left == 0)
-            })
-        })
-        .collect()
+/// The triangles of a model that a kernel's grid may put on the other side of a surface.
+pub(super) struct Layers {
+    /// Triangles that have an area in the model.
+    triangles: u32,
+    /// Those that may change sides.
+    pub(super) merged: u32,
+    /// Whether all of a material may.
+    is_material: bool,
 }
 
-/// Whether one of the triangles around a grid point is looked for; `look` says whether it is, and whether to give up.
-fn around(tree: &Tree, point: [i32; 3], look: &mut impl FnMut(u32) -> (bool, bool)) -> bool {
-    let mut waiting = vec![tree.root];
+impl Layers {
+    pub(super) fn of(model: &Model, grid: &Grid) -> Self {
+        let mut counts = vec![[0u32; 2]; model.materials.len()];
+        for (triangle, merged) in model.triangles.iter().zip(merged(model, grid)) {
+            if normal(triangle.vertices.map(|v| model.positions[v as usize])) != DVec3::ZERO {
+                let [all, lost] = &mut counts[triangle.material as usize];
+                *all += 1;
+                *lost += u32::from(merged);
+            }
+        }
+        Self {
+            triangles: counts.iter().map(|[all, _]| all).sum(),
+            merged: counts.iter().map(|[_, lost]| lost).sum(),
+            is_material: counts.iter().any(|[all, lost]| *all > 0 && all == lost),
+        }
+    }
+
+    /// Whether they are more than what is said nothing of.
+    pub(super) fn are_merged(&self) -> bool {
+        self.is_material || !few(self.merged, self.triangles)
+    }
+}
+
+/// Whether the middle of each triangle lies so close before or behind another, whose corners are none of its own, that a
+/// grid may put it on the other side.
+fn merged(model: &Model, grid: &Grid) -> Vec<bool> {
+    let count = model.triangles.len() as u32;
+    // More than a tree refers to are in no blob.
+    if !(1..Child::INDEX_END).contains(&count) {
+        return vec![false; model.triangles.len()];
+    }
+    let corners = |id: u32| model.triangles[id as usize].vertices.map(|v| model.positions[v as usize]);
+    let largest = model.positions.iter().fold(0.0, |largest: f64, p| largest.max(p.abs().max_element()));
+    let (together, apart) = (largest * TOGETHER, APART / grid.scale);
+    let tree = tree::build(grid.snap(model).iter().map(|corners| Bounds::of(&corners)), TreeOptions::default());
+    let is_merged = |waiting: &mut Vec<u32>, id: u32| {
+        let own = corners(id);
+        let middle = own.iter().sum::<DVec3>() / 3.0;
+        let mut left = LOOKED_AT;
+        around(&tree, waiting, grid.place(middle), &mut |other| {
+            let theirs = corners(other);
+            let touches = other == id || own.iter().any(|corner| theirs.contains(corner));
+            left -= 1;
+            let is_over = !touches && height(middle, theirs).is_some_and(|h| h > together && h < apart);
+            (is_over, left == 0)
+        })
+    };
+    (0..count).into_par_iter().map_init(Vec::new, is_merged).collect()
+}
+
+/// Whether one of the triangles around a grid point is looked for; `look` says whether it is, and whether to give up. What
+/// waits meanwhile is in `waiting`.
+fn around(tree: &Tree, waiting: &mut Vec<u32>, point: [i32; 3], look: &mut impl FnMut(u32) -> (bool, bool)) -> bool {
+    waiting.clear();
+    waiting.push(tree.root);
     while let Some(packed) = waiting.pop() {
         match Child::unpack(packed) {
             Child::Leaf { first, count } => {

@@ -12,6 +12,7 @@ use zerocopy::IntoBytes;
 use super::paint::Paint;
 use super::shared::Shared;
 use super::{PrepareError, camera, header};
+use crate::compacted::Compacted;
 use crate::grid::Grid;
 use crate::model::Model;
 
@@ -84,8 +85,8 @@ impl Writer {
         self.used = self.used.next_multiple_of(ALIGN);
     }
 
-    fn integers(&mut self, values: &[u32], wide: bool) {
-        if wide { self.records(values.iter().copied()) } else { self.records(values.iter().map(|&v| v as u16)) }
+    fn integers(&mut self, values: impl Iterator<Item = u32>, wide: bool) {
+        if wide { self.records(values) } else { self.records(values.map(|value| value as u16)) }
     }
 
     /// Closes the blob by its checksum, in its last four bytes.
@@ -108,20 +109,22 @@ pub(super) fn write<K: Kernel>(
         impl ExactSizeIterator<Item = K::Sphere>,
     >,
 ) -> Result<Blob, PrepareError> {
-    let (normals, corners) = normals::<K>(model, parts.ids);
+    let normals = Normals::of(model, parts.ids);
+    let smooth = if normals.count() > 0 { parts.ids } else { &[] };
     let (vertices, shared_corners, numbers): (&[_], &[_], &[_]) = match &parts.shared {
         Some(shared) => (&shared.vertices, &shared.corners, shared.numbers(parts.materials.len())),
         None => (&[], &[], &[]),
     };
     let lights: Vec<_> = model.lights.iter().map(|light| header::light(light, grid)).collect();
     let wide_ids = model.triangles.len() + model.spheres.len() > 1 << 16;
-    let ids = if parts.material_bits.is_some() { Vec::new() } else { [parts.ids, parts.sphere_ids].concat() };
+    let [ids, sphere_ids] =
+        if parts.material_bits.is_some() { [[].as_slice(); 2] } else { [parts.ids, parts.sphere_ids] };
     // The largest index is kept for flat triangles.
-    let wide_normals = normals.len() >= 1 << 16;
+    let wide_normals = normals.count() >= 1 << 16;
     let needs = header::needs(model, parts.materials, parts.lustres)
         .with(Need::WholeTriangles, parts.triangles.len() > 0)
         .with(Need::SharedVertices, parts.shared.is_some())
-        .with(Need::SmoothNormals, !corners.is_empty())
+        .with(Need::SmoothNormals, !smooth.is_empty())
         .with(Need::Spheres, !parts.sphere_ids.is_empty())
         .with(Need::Ids, parts.material_bits.is_none())
         .with(Need::IdsInRecords, parts.material_bits.is_some())
@@ -147,8 +150,8 @@ pub(super) fn write<K: Kernel>(
             triangles: parts.ids.len() as u32,
             vertices: vertices.len() as u32,
             spheres: parts.spheres.len() as u32,
-            smooth: corners.len() as u32 / 3,
-            normals: normals.len() as u32,
+            smooth: smooth.len() as u32,
+            normals: normals.count() as u32,
             paint: parts.paint.counts(),
             materials: parts.materials.len() as u32,
             lustres: parts.lustres.len() as u32,
@@ -174,9 +177,9 @@ pub(super) fn write<K: Kernel>(
         vertices.len() * size_of::<K::Vertex>(),
         numbers.len() * integer(wide_numbers),
         parts.spheres.len() * size_of::<K::Sphere>(),
-        ids.len() * integer(wide_ids),
-        corners.len() * integer(wide_normals),
-        size_of_val(normals.as_slice()),
+        (ids.len() + sphere_ids.len()) * integer(wide_ids),
+        3 * smooth.len() * integer(wide_normals),
+        normals.count() * size_of::<<K::Space as Space>::Normal>(),
         parts.paint.uv_indices.len() * integer(wide_uvs),
         size_of_val(parts.paint.uvs.as_slice()),
         parts.paint.colour_indices.len() * integer(wide_uvs),
@@ -206,16 +209,16 @@ pub(super) fn write<K: Kernel>(
     writer.records(encoded.into_iter());
     writer.records(parts.nodes);
     writer.records(parts.triangles);
-    writer.integers(shared_corners, wide_corners);
+    writer.integers(shared_corners.iter().copied(), wide_corners);
     writer.records(vertices.iter().map(|&vertex| K::vertex(vertex)));
-    writer.integers(numbers, wide_numbers);
+    writer.integers(numbers.iter().copied(), wide_numbers);
     writer.records(parts.spheres);
-    writer.integers(&ids, wide_ids);
-    writer.integers(&corners, wide_normals);
-    writer.records(normals.into_iter());
-    writer.integers(&parts.paint.uv_indices, wide_uvs);
+    writer.integers(ids.iter().chain(sphere_ids).copied(), wide_ids);
+    writer.integers(normals.corners(smooth), wide_normals);
+    writer.records(normals.records::<K>());
+    writer.integers(parts.paint.uv_indices.into_iter(), wide_uvs);
     writer.records(parts.paint.uvs.into_iter());
-    writer.integers(&parts.paint.colour_indices, wide_uvs);
+    writer.integers(parts.paint.colour_indices.into_iter(), wide_uvs);
     writer.records(parts.paint.colours.into_iter());
     writer.records(parts.paint.textures.into_iter());
     writer.records(parts.paint.texels.into_iter());
@@ -226,27 +229,35 @@ pub(super) fn write<K: Kernel>(
     Ok(writer.close())
 }
 
-/// The normals that are used, and three indices a triangle; both empty where no triangle is smooth.
-fn normals<K: Kernel>(model: &Model, ids: &[u32]) -> (Vec<<K::Space as Space>::Normal>, Vec<u32>) {
-    let triangles = || ids.iter().map(|&id| model.triangles[id as usize].normals);
-    if triangles().all(|normals| normals.is_none()) {
-        return (Vec::new(), Vec::new());
-    }
-    let mut numbers = vec![u32::MAX; model.normals.len()];
-    let mut records = Vec::new();
-    let mut corners = Vec::with_capacity(3 * ids.len());
-    for normals in triangles() {
-        match normals {
-            None => corners.extend([u32::MAX; 3]),
-            Some(normals) => corners.extend(normals.map(|old| {
-                let number = &mut numbers[old as usize];
-                if *number == u32::MAX {
-                    *number = records.len() as u32;
-                    records.push(K::Space::normal(header::unit_q30(model.normals[old as usize])));
-                }
-                *number
-            })),
+/// The normals of triangles, each numbered once; records and indices are made as they are written.
+struct Normals<'m> {
+    model: &'m Model,
+    used: Compacted,
+}
+
+impl<'m> Normals<'m> {
+    /// Those of some triangles.
+    fn of(model: &'m Model, ids: &[u32]) -> Self {
+        let mut used = Compacted::default();
+        for normal in ids.iter().filter_map(|&id| model.triangles[id as usize].normals).flatten() {
+            used.number(normal as usize);
         }
+        Self { model, used }
     }
-    (records, corners)
+
+    /// How many there are.
+    fn count(&self) -> usize {
+        self.used.used().len()
+    }
+
+    /// Three indices for each of the triangles.
+    fn corners(&self, ids: &[u32]) -> impl Iterator<Item = u32> {
+        let corners = |&id: &u32| self.model.triangles[id as usize].normals;
+        let number = |normal: u32| self.used.get(normal as usize);
+        ids.iter().flat_map(move |id| corners(id).map_or([u32::MAX; 3], |normals| normals.map(number)))
+    }
+
+    fn records<K: Kernel>(&self) -> impl Iterator<Item = <K::Space as Space>::Normal> {
+        self.used.used().map(|normal| K::Space::normal(header::unit_q30(self.model.normals[normal])))
+    }
 }

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use super::survey::{MOST_LIGHT, Survey, few, finer, keeper, lost_boxes, too_strong};
+use super::examiner::{Examiner, OnGrid};
+use super::survey::{MOST_LIGHT, few, lost_boxes, too_strong};
 use crate::grid::Grid;
 use crate::model::Model;
 
@@ -166,73 +167,100 @@ fn write_keeper(f: &mut fmt::Formatter<'_>, keeper: Option<(&'static str, u32)>)
 /// has for it.
 #[must_use]
 pub fn losses(kernel: &'static str, grid_bits: u32, radius_min: i32, model: &Model, grid: &Grid) -> Vec<Loss> {
-    let own = Survey::of(kernel, radius_min, model, grid);
-    let mut losses = Vec::new();
-    if own.bits < FEW_BITS {
-        let keeper = keeper(finer(grid_bits, model), |survey| survey.bits >= FEW_BITS);
-        losses.push(Loss::Bits {
-            left: [own.bits, grid_bits],
-            kernel,
-            keeper: keeper.filter(|survey| survey.bits > own.bits).map(|survey| (survey.kernel, survey.bits)),
-        });
+    Examiner::new(model).losses(kernel, grid_bits, radius_min, grid)
+}
+
+impl Examiner<'_> {
+    /// What is lost on the grid that a kernel of this name, with so many bits for coordinates and no smaller radii, has for the
+    /// model.
+    #[must_use]
+    pub fn losses(&self, kernel: &'static str, grid_bits: u32, radius_min: i32, grid: &Grid) -> Vec<Loss> {
+        let model = self.model;
+        let made;
+        let place = match self.known(kernel, grid) {
+            Some(known) => known,
+            None => {
+                made = OnGrid::new(kernel, grid_bits, radius_min, model, *grid);
+                &made
+            }
+        };
+        let own = place.survey();
+        let mut losses = Vec::new();
+        if own.bits < FEW_BITS {
+            let keeper = self.keeper(grid_bits, |other| other.survey().bits >= FEW_BITS);
+            losses.push(Loss::Bits {
+                left: [own.bits, grid_bits],
+                kernel,
+                keeper: keeper.map(|other| (other.kernel, other.survey().bits)).filter(|&(_, bits)| bits > own.bits),
+            });
+        }
+        if own.loses_shapes() {
+            let keeper = self.keeper(grid_bits, |other| !other.survey().loses_shapes());
+            losses.push(Loss::Triangles {
+                share: [own.lost, own.triangles],
+                materials: own.materials.iter().map(|&i| model.materials[i].name.clone()).collect(),
+                kernel,
+                keeper: fewer(keeper, own.lost, |other| other.survey().lost),
+            });
+        }
+        if own.lost_spheres > 0 {
+            let keeper = self.keeper(grid_bits, |other| other.survey().lost_spheres == 0);
+            losses.push(Loss::Spheres {
+                share: [own.lost_spheres, own.spheres],
+                kernel,
+                keeper: fewer(keeper, own.lost_spheres, |other| other.survey().lost_spheres),
+            });
+        }
+        // Where shapes are lost already, what becomes of the rest is no news.
+        let told = !losses.is_empty();
+        if !told && place.layers().are_merged() {
+            let keeper = self.keeper(grid_bits, |other| !other.layers().are_merged());
+            let merged = place.layers().merged;
+            losses.push(Loss::Layers {
+                share: [merged, own.triangles],
+                kernel,
+                keeper: fewer(keeper, merged, |other| other.layers().merged),
+            });
+        }
+        if !told && own.turns_shapes() {
+            let keeper =
+                self.keeper(grid_bits, |other| !other.survey().turns_shapes() && !other.survey().loses_shapes());
+            losses.push(Loss::Turned {
+                share: own.turned,
+                kernel,
+                keeper: fewer(keeper, own.turned[0], |other| other.survey().turned[0]),
+            });
+        }
+        if !told && own.is_near {
+            let keeper = self.keeper(grid_bits, |other| !other.survey().is_near);
+            let keeper = keeper.filter(|other| !other.survey().is_near).map(|other| other.kernel);
+            losses.push(Loss::Near { kernel, keeper });
+        }
+        let boxes = lost_boxes(kernel, &grid.snap(model));
+        if !few(boxes, own.triangles) {
+            losses.push(Loss::Boxes { share: [boxes, own.triangles], kernel });
+        }
+        match too_strong(model) {
+            0 => {}
+            count => losses.push(Loss::Strength { count }),
+        }
+        losses
     }
-    if own.loses_shapes() {
-        let keeper = keeper(finer(grid_bits, model), |survey| !survey.loses_shapes());
-        losses.push(Loss::Triangles {
-            share: [own.lost, own.triangles],
-            materials: own.materials.iter().map(|&i| model.materials[i].name.clone()).collect(),
-            kernel,
-            keeper: keeper.filter(|survey| survey.lost < own.lost).map(|survey| (survey.kernel, survey.lost)),
-        });
-    }
-    if own.lost_spheres > 0 {
-        let keeper = keeper(finer(grid_bits, model), |survey| survey.lost_spheres == 0);
-        let keeper = keeper.filter(|survey| survey.lost_spheres < own.lost_spheres);
-        losses.push(Loss::Spheres {
-            share: [own.lost_spheres, own.spheres],
-            kernel,
-            keeper: keeper.map(|survey| (survey.kernel, survey.lost_spheres)),
-        });
-    }
-    // Where shapes are lost already, what becomes of the rest is no news.
-    let told = !losses.is_empty();
-    if !told && own.merges_layers() {
-        let keeper = keeper(finer(grid_bits, model), |survey| !survey.merges_layers());
-        losses.push(Loss::Layers {
-            share: [own.layers, own.triangles],
-            kernel,
-            keeper: keeper.filter(|survey| survey.layers < own.layers).map(|survey| (survey.kernel, survey.layers)),
-        });
-    }
-    if !told && own.turns_shapes() {
-        let keeper = keeper(finer(grid_bits, model), |survey| !survey.turns_shapes() && !survey.loses_shapes());
-        let [turned, all] = own.turned;
-        let keeper = keeper.filter(|survey| survey.turned[0] < turned);
-        losses.push(Loss::Turned {
-            share: [turned, all],
-            kernel,
-            keeper: keeper.map(|survey| (survey.kernel, survey.turned[0])),
-        });
-    }
-    if !told && own.is_near {
-        let keeper = keeper(finer(grid_bits, model), |survey| !survey.is_near);
-        losses.push(Loss::Near { kernel, keeper: keeper.filter(|survey| !survey.is_near).map(|survey| survey.kernel) });
-    }
-    let boxes = lost_boxes(kernel, &grid.snap(model));
-    if !few(boxes, own.triangles) {
-        losses.push(Loss::Boxes { share: [boxes, own.triangles], kernel });
-    }
-    match too_strong(model) {
-        0 => {}
-        count => losses.push(Loss::Strength { count }),
-    }
-    losses
+}
+
+/// A kernel, and how many it loses, where these are fewer.
+fn fewer(keeper: Option<&OnGrid<'_>>, than: u32, count: impl Fn(&OnGrid<'_>) -> u32) -> Option<(&'static str, u32)> {
+    keeper.map(|keeper| (keeper.kernel, count(keeper))).filter(|&(_, count)| count < than)
 }
 
 /// The first kernel with a finer grid that keeps some triangles or spheres of a model, and how many.
 pub(super) fn keeps_some(grid_bits: u32, model: &Model) -> Option<Keeper> {
-    let kept = |survey: &Survey| survey.triangles - survey.lost + survey.spheres - survey.lost_spheres;
-    finer(grid_bits, model)
-        .find(|survey| kept(survey) > 0)
-        .map(|survey| Keeper { kernel: survey.kernel, kept: kept(&survey) })
+    let kept = |other: &OnGrid<'_>| {
+        let survey = other.survey();
+        survey.triangles - survey.lost + survey.spheres - survey.lost_spheres
+    };
+    Examiner::new(model)
+        .finer(grid_bits)
+        .map(|other| Keeper { kernel: other.kernel, kept: kept(other) })
+        .find(|keeper| keeper.kept > 0)
 }

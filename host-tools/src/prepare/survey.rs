@@ -1,7 +1,6 @@
-//! What a kernel's grid makes of a model, counted.
+//! What a kernel's grid makes of a model, counted. What takes a tree is not: see [`Layers`](super::layers::Layers).
 
 use core_rt::arithmetic::Knobs;
-use core_rt::exact::{Exact20, Exact29};
 use core_rt::hanika::{HanikaC, HanikaCd};
 use core_rt::kernel::{Bounds, Kernel, Vertices};
 use core_rt::num::{cross, sub};
@@ -28,7 +27,6 @@ pub(super) fn few(some: u32, all: u32) -> bool {
 
 /// What a kernel's grid makes of a model.
 pub(super) struct Survey {
-    pub(super) kernel: &'static str,
     /// Triangles that have an area in the model.
     pub(super) triangles: u32,
     /// Those of them that have none on the grid.
@@ -43,16 +41,12 @@ pub(super) struct Survey {
     pub(super) bits: u32,
     /// Flat triangles with an area on the grid, and those of them that face another way there.
     pub(super) turned: [u32; 2],
-    /// Triangles that may be on the other side of a surface.
-    pub(super) layers: u32,
-    /// Whether all of a material is.
-    pub(super) is_layer: bool,
     /// Whether the camera or a light may be.
     pub(super) is_near: bool,
 }
 
 impl Survey {
-    pub(super) fn of(kernel: &'static str, radius_min: i32, model: &Model, grid: &Grid) -> Self {
+    pub(super) fn of(radius_min: i32, model: &Model, grid: &Grid) -> Self {
         let is_kept = |sphere: &&Sphere| grid.ball(sphere).radius >= radius_min;
         let mut of_spheres = vec![false; model.materials.len()];
         for sphere in model.spheres.iter().filter(is_kept) {
@@ -60,19 +54,14 @@ impl Survey {
         }
         let spheres = model.spheres.len() as u32;
         let mut counts = vec![[0u32; 2]; model.materials.len()];
-        let mut layers = vec![[0u32; 2]; model.materials.len()];
         let mut turned = [0; 2];
         let snapped = grid.snap(model);
-        let merged = layers::merged(model, grid, &snapped);
-        for ((triangle, corners), merged) in model.triangles.iter().zip(snapped.iter()).zip(merged) {
+        for (triangle, corners) in model.triangles.iter().zip(snapped.iter()) {
             let normal = normal(triangle.vertices.map(|v| model.positions[v as usize]));
             if normal != DVec3::ZERO {
                 let [all, lost] = &mut counts[triangle.material as usize];
                 *all += 1;
                 *lost += u32::from(!has_area(corners));
-                let [all, lost] = &mut layers[triangle.material as usize];
-                *all += 1;
-                *lost += u32::from(merged);
             }
             if normal != DVec3::ZERO && has_area(corners) && triangle.normals.is_none() {
                 let on_grid = self::normal(corners.map(|c| DVec3::from_array(c.map(f64::from))));
@@ -81,7 +70,6 @@ impl Survey {
             }
         }
         Self {
-            kernel,
             triangles: counts.iter().map(|[all, _]| all).sum(),
             lost: counts.iter().map(|[_, lost]| lost).sum(),
             spheres,
@@ -93,8 +81,6 @@ impl Survey {
                 .collect(),
             bits: grid.bits(model),
             turned,
-            layers: layers.iter().map(|[_, lost]| lost).sum(),
-            is_layer: layers.iter().any(|[all, lost]| *all > 0 && all == lost),
             is_near: is_near(model, grid),
         }
     }
@@ -104,22 +90,13 @@ impl Survey {
         !few(turned, all)
     }
 
-    pub(super) fn merges_layers(&self) -> bool {
-        self.is_layer || !few(self.layers, self.triangles)
-    }
-
-    /// The same on the kernel's own grid; `None` where it has none for the model.
-    fn on_grid_of<K: Kernel>(model: &Model) -> Option<Self> {
-        Some(Self::of(K::NAME, K::RADIUS_MIN, model, &Grid::fit::<K>(model).ok()?))
-    }
-
     pub(super) fn loses_shapes(&self) -> bool {
         !self.materials.is_empty() || !few(self.lost, self.triangles)
     }
 }
 
 /// The normal of a triangle, of its area's length.
-fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
+pub(super) fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
@@ -173,26 +150,4 @@ pub(super) fn too_strong(model: &Model) -> u32 {
 pub(super) fn has_area(corners: Vertices) -> bool {
     let [a, b, c] = corners.map(|v| v.map(i64::from));
     cross(sub(b, a), sub(c, a)) != [0; 3]
-}
-
-/// What kernels with finer grids than one of so many bits make of a model, the coarsest first.
-pub(super) fn finer(grid_bits: u32, model: &Model) -> impl Iterator<Item = Survey> {
-    // One after the other, as far as they are asked for.
-    let of_20 =
-        (Exact20::GRID_BITS > grid_bits).then_some(Survey::on_grid_of::<Exact20> as fn(&Model) -> Option<Survey>);
-    let of_29 =
-        (Exact29::GRID_BITS > grid_bits).then_some(Survey::on_grid_of::<Exact29> as fn(&Model) -> Option<Survey>);
-    [of_20, of_29].into_iter().flatten().filter_map(|survey| survey(model))
-}
-
-/// The first that is good enough, else the last; where that is better than none at all.
-pub(super) fn keeper(surveys: impl Iterator<Item = Survey>, enough: impl Fn(&Survey) -> bool) -> Option<Survey> {
-    let mut last = None;
-    for survey in surveys {
-        if enough(&survey) {
-            return Some(survey);
-        }
-        last = Some(survey);
-    }
-    last
 }
