@@ -25,7 +25,7 @@
 use core::arch::x86_64::*;
 
 use core_rt::bvh::Bvh;
-use core_rt::exact::{Depth, Exact29, Ray, Reciprocal, Reciprocal29, Width, Width29};
+use core_rt::exact::{Exact29, Ray, Reciprocal, Reciprocal29, Width, Width29};
 use core_rt::kernel::{Kernel, NONE, Vertices};
 use core_rt::num::{cross, sub};
 use core_rt::profile::Profile;
@@ -34,6 +34,7 @@ use core_rt::stats::Stats;
 use super::collapse::WIDTH;
 use super::product::{Both, SHUFFLED, Triple, bits, load, product, shuffle, splat};
 use super::search::{Found, search};
+use super::sphere29;
 use super::tree::{Layout, Node, Packet, Wide};
 use super::walk::Entered;
 
@@ -275,7 +276,7 @@ fn enter_one_by_one<'n>(
 }
 
 /// Two t between which that of a hit is, or at one of which, in `T_BITS` of the kernel.
-type Between = [i64; 2];
+pub(super) type Between = [i64; 2];
 
 /// The hit with a triangle, by the kernel.
 #[inline(never)]
@@ -308,8 +309,14 @@ fn hits<P: Profile<Kernel = Exact29>>(
 ) {
     let lanes = Lanes::new(ray);
     let end = ray.reach.map_or(i64::MAX, |reach| 1 << (Width29::T_BITS as i32 + reach).clamp(0, 62));
-    let test = |found: Found<'_, i32, ROWS, Depth<Width29>>| match found {
-        Found::Sphere(index, depth) => visit(index, Exact29::span(&depth).ends()),
+    let test = |found: Found<'_, i32, ROWS>| match found {
+        Found::Sphere(index, limit) => {
+            let sphere = of.1.sphere(index).and_then(|sphere| sphere29::hit(ray, sphere, index == ray.skip, end));
+            match sphere {
+                Some(between) => visit(index, between),
+                None => Some(limit),
+            }
+        }
         Found::Packet(packet, mut limit) => {
             let left = lanes.left(packet, limit);
             let mut mask = left.mask;
@@ -334,16 +341,9 @@ fn hits<P: Profile<Kernel = Exact29>>(
     };
     if is_steep(ray) {
         let reciprocals = ray.direction.map(Reciprocal29::new);
-        search(
-            of,
-            ray,
-            reach(ray),
-            stats,
-            |node, limit| enter_one_by_one(&ray.origin, &reciprocals, node, limit),
-            test,
-        );
+        search(of.0, reach(ray), stats, |node, limit| enter_one_by_one(&ray.origin, &reciprocals, node, limit), test);
     } else {
-        search(of, ray, reach(ray), stats, |node, limit| lanes.enter(node, limit), test);
+        search(of.0, reach(ray), stats, |node, limit| lanes.enter(node, limit), test);
     }
 }
 

@@ -1,15 +1,16 @@
 //! `f32` in the same layout, for comparison: the scalar kernel's formulas, operation by operation.
 
 use core::arch::x86_64::*;
+use core::cmp::Ordering;
 
 use core_rt::bvh::Bvh;
-use core_rt::kernel::Vertices;
+use core_rt::kernel::{Kernel, NONE, Vertices};
 use core_rt::profile::Profile;
 use core_rt::stats::Stats;
 use float_rt::{Float32, Ray};
 
 use super::collapse::WIDTH;
-use super::search::{Found, Nearest, search};
+use super::search::{Found, search};
 use super::tree::{Layout, Node, Packet, Row, Wide};
 use super::walk::Entered;
 
@@ -149,8 +150,8 @@ pub(super) fn closest<P: Profile<Kernel = Float32>>(
         }
         limit
     };
-    let test = |found: Found<'_, f32, ROWS, f32>| match found {
-        Found::Sphere(index, depth) => Some(take(index, depth)),
+    let test = |found: Found<'_, f32, ROWS>| match found {
+        Found::Sphere(index, limit) => Some(sphere(of.1, ray, index).map_or(limit, |depth| take(index, depth))),
         Found::Packet(packet, mut limit) => {
             let (mut mask, t) = lanes.hits(packet);
             let t: [f32; WIDTH] = zerocopy::transmute!(t);
@@ -165,6 +166,36 @@ pub(super) fn closest<P: Profile<Kernel = Float32>>(
             Some(limit)
         }
     };
-    search(of, ray, ray.reach, stats, |node, limit| lanes.enter(node, limit), test);
-    nearest.hit()
+    search(of.0, ray.reach, stats, |node, limit| lanes.enter(node, limit), test);
+    nearest.hit
+}
+
+/// The hit with a sphere, by the kernel's own test.
+#[inline(never)]
+fn sphere<P: Profile<Kernel = Float32>>(bvh: &Bvh<'_, P>, ray: &Ray<f32>, index: u32) -> Option<f32> {
+    Float32::intersect_sphere(ray, bvh.sphere(index)?, index == ray.skip)
+}
+
+/// The nearest of some hits: the smallest (t, id).
+struct Nearest {
+    hit: u32,
+    depth: Option<f32>,
+}
+
+impl Nearest {
+    const NONE: Self = Self { hit: NONE, depth: None };
+
+    /// Takes a hit where it is nearer; whether it is.
+    #[inline]
+    fn take<P: Profile<Kernel = Float32>>(&mut self, bvh: &Bvh<'_, P>, index: u32, depth: f32) -> bool {
+        let is_nearer = self.depth.is_none_or(|nearest| match Float32::order(&depth, &nearest) {
+            Ordering::Less => true,
+            Ordering::Equal => bvh.id(index) < bvh.id(self.hit),
+            Ordering::Greater => false,
+        });
+        if is_nearer {
+            *self = Self { hit: index, depth: Some(depth) };
+        }
+        is_nearer
+    }
 }

@@ -5,6 +5,7 @@ mod exact29;
 mod float32;
 mod product;
 mod search;
+mod sphere29;
 mod tree;
 mod walk;
 
