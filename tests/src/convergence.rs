@@ -18,9 +18,6 @@ use rayon::prelude::*;
 /// The exponents of the error over the number of samples that count as -1/2.
 pub const ALLOWED: RangeInclusive<f64> = -0.55..=-0.45;
 
-/// One, as sums of a kernel have it.
-const ONE: f64 = 65536.0;
-
 /// The root of the mean square of the difference, over all channels: linear light, of which white is 1.
 ///
 /// # Panics
@@ -114,7 +111,7 @@ pub fn errors(
         let mut picture = vec![DVec3::ZERO; truth.len()];
         for (place, sum) in tiles.iter().zip(&sums).flat_map(|(tile, sums)| tile.places().zip(sums)) {
             let pixel = usize::from(place[1]) * usize::from(width) + usize::from(place[0]);
-            picture[pixel] = DVec3::from_array(sum.map(f64::from)) / (ONE * f64::from(count));
+            picture[pixel] = DVec3::from_array(sum.map(f64::from)) / (f64::from(stage.white()) * f64::from(count));
         }
         (count, rmse(&picture, truth))
     };

@@ -11,7 +11,7 @@ use host_tools::planes::scene::Options;
 use planes_rt::camera::{Camera, FRACTION_BITS, Linear};
 use planes_rt::colour::Surface;
 use planes_rt::pixel;
-use planes_rt::scene::{Outline, Scene, Settings, Sphere};
+use planes_rt::scene::{Outline, Sample, Scene, Settings, Sphere};
 use planes_rt::widths::Widths;
 use tests::planes::way;
 
@@ -82,6 +82,7 @@ fn spheres() -> Vec<Sphere> {
             own: colour.map(|c| c * 100),
             mirror: [1024; 3],
             roughness: 0,
+            matt: [0; 3],
         },
     };
     CENTRES.into_iter().zip(colours).map(sphere).collect()
@@ -106,7 +107,7 @@ fn camera(size: [u16; 2], length: u16) -> Camera {
 
 fn settings(size: [u16; 2], t_bits: u32) -> Settings {
     let widths = Widths::new(12, 24, 36, t_bits).expect("bits in range");
-    Settings { widths, size, generations: 2, outline: Outline::Nearest, samples: 1 }
+    Settings { widths, size, generations: 2, outline: Outline::Nearest, samples: 1, paths: false }
 }
 
 fn scene(spheres: &[Sphere], camera: Camera, settings: Settings) -> Scene<'_> {
@@ -130,7 +131,7 @@ fn row(size: [u16; 2], length: u16, bits: u32) -> Row {
         let (origin, direction) = scene.ray(pixel);
         let real = way(&spheres, origin, direction, 2);
         let mut met = Vec::new();
-        pixel::trace_telling(&scene, pixel, 0, |one| met.push(one));
+        pixel::trace_telling(&scene, pixel, Sample::numbered(0), |one| met.push(one));
         let (Some(real_first), Some(first)) = (real.first(), met.first()) else { continue };
         if first.sphere != real_first.sphere {
             continue;
