@@ -78,8 +78,8 @@ fn sample<const N: usize, const SAMPLED: bool>(
     pixels: &[[u16; 2]; N],
     sample: Sample,
 ) -> [Light; N] {
-    let ray = |pixel| if SAMPLED { scene.ray_of(pixel, sample) } else { scene.ray(pixel) };
-    let mut lanes = Lanes::new(pixels.map(ray));
+    let mut lanes =
+        Lanes::new(|lane| if SAMPLED { scene.ray_of(pixels[lane], sample) } else { scene.ray(pixels[lane]) });
     for generation in 0..scene.settings.generations {
         if !any(&lanes.alive) {
             break;
@@ -112,7 +112,7 @@ struct Lanes<const N: usize> {
 
 impl<const N: usize> Lanes<N> {
     #[inline(always)]
-    fn new(rays: [([i16; 3], [i16; 3]); N]) -> Self {
+    fn new(ray: impl Fn(usize) -> ([i16; 3], [i16; 3])) -> Self {
         let mut lanes = Self {
             origin: [[0; N]; 3],
             direction: [[0; N]; 3],
@@ -122,7 +122,7 @@ impl<const N: usize> Lanes<N> {
             alive: [-1; N],
         };
         for lane in 0..N {
-            let (origin, direction) = rays[lane];
+            let (origin, direction) = ray(lane);
             set(&mut lanes.origin, lane, -1, origin);
             set(&mut lanes.direction, lane, -1, direction);
         }
