@@ -7,7 +7,7 @@ use core_rt::path::Sum;
 use core_rt::render::Tile;
 use glam::DVec3;
 use host_tools::engine::Engine;
-use host_tools::model::Model;
+use host_tools::model::{Background, Light, LightKind, Material, MaterialKind, Model, Projection, Sphere};
 use host_tools::prepare::Options;
 use host_tools::reference::Reference;
 use host_tools::report::page::fit;
@@ -55,6 +55,47 @@ pub fn scene(size: [u32; 2]) -> Model {
             _ => 0.0,
         };
     }
+    model
+}
+
+/// Of a colour, diffuse and mirrored shares of it, and how rough its mirror is; nothing else.
+#[must_use]
+pub fn material(colour: DVec3, weights: [f64; 2], roughness: f64) -> Material {
+    let [diffuse, mirrored] = weights;
+    Material {
+        kind: MaterialKind::Mirror,
+        colour,
+        roughness,
+        weights: Some([diffuse, 0.0, mirrored, 0.0]),
+        ..Material::default()
+    }
+}
+
+/// A matt ball, a rough and a half mirror and one that shines, close to each other: what `docs/SHADING.md` says of them is all that
+/// the tracer of 1994 knows too, since nothing is shadowed.
+#[must_use]
+pub fn spheres(size: [u32; 2]) -> Model {
+    let shining = Material { emission: DVec3::new(0.9, 0.7, 0.3), ..material(DVec3::splat(0.1), [1.0, 0.0], 0.0) };
+    let mut model = Model {
+        materials: vec![
+            material(DVec3::new(0.9, 0.4, 0.2), [1.0, 0.0], 0.0),
+            material(DVec3::new(0.7, 0.8, 0.9), [0.0, 1.0], 0.3),
+            material(DVec3::new(0.5, 0.9, 0.6), [0.5, 0.4], 0.0),
+            shining,
+        ],
+        spheres: [[-1.05, -0.2, 0.0, 1.0], [1.0, 0.0, -0.3, 1.0], [0.1, 0.2, 1.5, 0.6], [0.0, 1.6, 0.4, 0.7]]
+            .into_iter()
+            .zip(0..)
+            .map(|([x, y, z, radius], material)| Sphere { centre: DVec3::new(x, y, z), radius, material })
+            .collect(),
+        lights: vec![Light::new(LightKind::Directional(DVec3::new(0.5, -1.0, -1.0)), DVec3::splat(0.6))],
+        background: Background::Colour(DVec3::new(0.2, 0.3, 0.5)),
+        ..Model::default()
+    };
+    model.camera.position = DVec3::new(0.0, 0.5, 6.0);
+    model.camera.projection = Projection::Perspective { fov_y: 0.8 };
+    let render = &mut model.render;
+    (render.size, render.paths, render.shadows, render.max_depth) = (size, true, false, 6);
     model
 }
 

@@ -125,6 +125,7 @@ mod tests {
         let sphere = |x| Sphere { centre: DVec3::new(x, 0.0, 0.0), radius: 0.5, material: 0 };
         let mut model = Model { spheres: vec![sphere(-0.6), sphere(0.6)], ..Model::default() };
         (model.render.size, model.render.samples, model.render.paths) = ([16, 12], 11, true);
+        model.background = DVec3::splat(0.5).into();
         model.camera.position = DVec3::new(0.0, 0.0, 3.0);
         let blob = PLANES12.prepare(&model, &prepare::Options::default()).unwrap().blob;
         let stage = PLANES12.stage(blob.bytes()).unwrap();

@@ -51,14 +51,6 @@ pub(crate) struct Row {
     pub(crate) up_to_2: usize,
 }
 
-/// What there is beside the text.
-const ROUGH: &str = "\n## Rough mirrors\n\nThe text would like \"statistically-based random jittering of reflection rays\", several dozen samples a pixel. `planes12` has it \
-    where a mirror has a `roughness` (`docs/SHADING.md`): the reflected ray m goes on along m + r |m| s, for a point s of the unit \
-    sphere by a hash of pixel, sample and generation, is brought back to the length of m, and mirrored at the surface where it would go into it. \
-    So normals and rays stay in their words, processors need no generator, and no edge of a tile or a renderer shows. A pixel is the \
-    mean of the scene's `samples`, all through its middle. Lanes in lockstep, pixels one by one and both chips have the same \
-    bits; a scene without rough mirrors takes as long as before. The machine below has none: its program is the text's.\n";
-
 /// All figures.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Planes {
@@ -260,7 +252,6 @@ impl Planes {
              | ![literal](studies/planes-literal.png) | ![corrected](studies/planes-nearest.png) |\n",
             self.otherwise, self.covered
         );
-        text += ROUGH;
         text
     }
 }

@@ -6,7 +6,7 @@ use core_rt::render::Tile;
 use glam::DVec3;
 use host_tools::compare::compare;
 use host_tools::engine::PLANES12;
-use host_tools::model::{Background, Light, LightKind, Material, MaterialKind, Model, Projection, Sphere, Transfer};
+use host_tools::model::{Material, Model, Projection, Sphere, Transfer};
 use host_tools::planes::scene::{Options, Planes};
 use host_tools::planes::{Way, light, picture};
 use host_tools::prepare;
@@ -14,7 +14,7 @@ use host_tools::reference::Reference;
 use planes_rt::colour::{LIGHT_MAX, Light as Words};
 use planes_rt::pixel;
 use planes_simd::Lockstep;
-use tests::convergence::{ALLOWED, Truth, errors, exponent, truth};
+use tests::convergence::{ALLOWED, Truth, errors, exponent, material, rmse, spheres, truth};
 use tests::effort;
 use tests::random::SplitMix64;
 
@@ -62,17 +62,6 @@ fn ball(x: f64) -> Sphere {
     Sphere { centre: DVec3::new(x, 0.0, 0.0), radius: 1.0, material: 0 }
 }
 
-fn of(colour: DVec3, weights: [f64; 2], roughness: f64) -> Material {
-    let [diffuse, mirrored] = weights;
-    Material {
-        kind: MaterialKind::Mirror,
-        colour,
-        roughness,
-        weights: Some([diffuse, 0.0, mirrored, 0.0]),
-        ..Material::default()
-    }
-}
-
 fn gathered(model: &Model) -> Vec<Words> {
     let planes = Planes::new(model, &Options::default()).unwrap();
     assert_eq!(planes.warnings, [""; 0]);
@@ -85,7 +74,7 @@ fn gathered(model: &Model) -> Vec<Words> {
 fn a_ball_alone_is_as_bright_as_it_says() {
     let grey = DVec3::new(0.75, 0.5, 0.25);
     for (weights, roughness) in [([1.0, 0.0], 0.0), ([0.0, 1.0], 0.0), ([0.0, 1.0], 0.6), ([0.5, 0.5], 0.2)] {
-        let found = gathered(&furnace(&[ball(0.0)], of(grey, weights, roughness)));
+        let found = gathered(&furnace(&[ball(0.0)], material(grey, weights, roughness)));
         let expected = grey.to_array().map(|c| (c * f64::from(LIGHT_MAX)).round() as u16);
         for light in &found {
             let is_near = light.iter().zip(expected).all(|(&found, meant)| found.abs_diff(meant) <= 2);
@@ -99,7 +88,7 @@ fn a_ball_alone_is_as_bright_as_it_says() {
 #[test]
 fn nothing_is_seen_in_a_white_furnace() {
     for (weights, roughness) in [([1.0, 0.0], 0.0), ([0.0, 1.0], 0.5), ([0.5, 0.5], 0.0)] {
-        let mut model = furnace(&[ball(-1.01), ball(1.01)], of(DVec3::ONE, weights, roughness));
+        let mut model = furnace(&[ball(-1.01), ball(1.01)], material(DVec3::ONE, weights, roughness));
         model.camera.projection = Projection::Perspective { fov_y: 0.25 };
         assert!(gathered(&model).iter().flatten().all(|&channel| channel == LIGHT_MAX), "{weights:?}");
         // A surface that keeps a hundredth is.
@@ -108,38 +97,11 @@ fn nothing_is_seen_in_a_white_furnace() {
     }
 }
 
-/// A matt ball, a rough and a half mirror and one that shines, close to each other: what `docs/SHADING.md` says of them is all that
-/// the tracer of 1994 knows too, since nothing is shadowed.
-fn room() -> Model {
-    let shining = Material { emission: DVec3::new(0.9, 0.7, 0.3), ..of(DVec3::splat(0.1), [1.0, 0.0], 0.0) };
-    let mut model = Model {
-        materials: vec![
-            of(DVec3::new(0.9, 0.4, 0.2), [1.0, 0.0], 0.0),
-            of(DVec3::new(0.7, 0.8, 0.9), [0.0, 1.0], 0.3),
-            of(DVec3::new(0.5, 0.9, 0.6), [0.5, 0.4], 0.0),
-            shining,
-        ],
-        spheres: [[-1.05, -0.2, 0.0, 1.0], [1.0, 0.0, -0.3, 1.0], [0.1, 0.2, 1.5, 0.6], [0.0, 1.6, 0.4, 0.7]]
-            .into_iter()
-            .zip(0..)
-            .map(|([x, y, z, radius], material)| Sphere { centre: DVec3::new(x, y, z), radius, material })
-            .collect(),
-        lights: vec![Light::new(LightKind::Directional(DVec3::new(0.5, -1.0, -1.0)), DVec3::splat(0.6))],
-        background: Background::Colour(DVec3::new(0.2, 0.3, 0.5)),
-        ..Model::default()
-    };
-    model.camera.position = DVec3::new(0.0, 0.5, 6.0);
-    model.camera.projection = Projection::Perspective { fov_y: 0.8 };
-    let render = &mut model.render;
-    (render.size, render.paths, render.shadows, render.max_depth) = ([24, 18], true, false, 6);
-    model
-}
-
 const COUNTS: [u32; 5] = [1, 4, 16, 64, 256];
 
 #[test]
 fn the_error_falls_as_the_inverse_square_root_of_the_samples() {
-    let model = room();
+    let model = spheres([24, 18]);
     let Truth { picture, noise } = truth(&model, 4096);
     let all = |range: Range<u16>| vec![range];
     let found = errors(PLANES12, &model, &picture, &COUNTS, all);
@@ -174,11 +136,11 @@ fn own(model: &Model, samples: Range<u16>) -> Vec<DVec3> {
 /// What no number of samples takes away is that of the words, and the reference's noise with it.
 #[test]
 fn paths_gather_what_the_reference_gathers() {
-    let mut model = room();
+    let mut model = spheres([24, 18]);
     let apart = |model: &Model, picture: &[DVec3]| {
         let off: Vec<DVec3> = own(model, 0..8192).into_iter().zip(picture).map(|(a, b)| a - *b).collect();
         let mean = off.iter().copied().sum::<DVec3>() / off.len() as f64;
-        (tests::convergence::rmse(&off, &vec![DVec3::ZERO; off.len()]), mean)
+        (rmse(&off, &vec![DVec3::ZERO; off.len()]), mean)
     };
     let Truth { picture, noise } = truth(&model, 8192);
     let (error, mean) = apart(&model, &picture);
@@ -205,7 +167,7 @@ fn paths_gather_what_the_reference_gathers() {
 /// Samples all over a pixel: edges are as the reference's of as many samples, and one sample's are not.
 #[test]
 fn several_samples_are_in_places_all_over_the_pixel() {
-    let mut model = room();
+    let mut model = spheres([24, 18]);
     (model.render.paths, model.render.size, model.render.samples) = (false, [96, 72], 16);
     model.materials.iter_mut().for_each(|material| {
         material.roughness = 0.0;
