@@ -12,7 +12,7 @@ const COUNTS: [u32; 5] = [1, 4, 16, 64, 256];
 /// Of the reference's picture.
 const TRUTH_SAMPLES: u32 = 4096;
 
-const SIZE: [u32; 2] = [24, 18];
+const SIZE: [u32; 2] = [48, 36];
 
 const TEXT: &str = "\n## Several samples, rough mirrors and paths\n\n\
     The text's future work: \"statistically-based random jittering of reflection rays\", several dozen samples a pixel. Random numbers are a \
