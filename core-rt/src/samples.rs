@@ -24,7 +24,8 @@ pub struct Place {
 impl Place {
     /// How far right and down of the middle, Q16 in [-2^15, 2^15).
     #[inline]
-    pub(crate) fn off_middle(self) -> [i32; 2] {
+    #[must_use]
+    pub fn off_middle(self) -> [i32; 2] {
         [self.right_q16, self.down_q16].map(|c| i32::from(c) - MIDDLE as i32)
     }
 }

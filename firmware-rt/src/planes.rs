@@ -57,10 +57,10 @@ fn drawn(scene: &Scene<'_>, transfer: Transfer, mut wire: Wire, board: &Board) -
     let mut bytes = [0; BYTES];
     for tile in Tile::of([width, height], [TILE; 2]) {
         intray_window_begin();
-        if scene.is_rough() {
-            draw_rough(scene, transfer, tile, &mut bytes);
-        } else {
+        if scene.is_plain() {
             draw(scene, transfer, tile, &mut bytes);
+        } else {
+            draw_sampled(scene, transfer, tile, &mut bytes);
         }
         intray_window_end();
         let head = TileHead { x: tile.x, y: tile.y, width: tile.width, height: tile.height };
@@ -80,10 +80,10 @@ fn draw(scene: &Scene<'_>, transfer: Transfer, tile: Tile, bytes: &mut [u8; BYTE
     fill(transfer, tile, bytes, |pixels| lanes::trace(scene, pixels));
 }
 
-/// The same where there are rough mirrors, pixel by pixel: lanes have the same light, and a second copy of theirs would cost the
+/// The same of any other scene, pixel by pixel: lanes have the same light, and a second copy of theirs would cost the
 /// first one a tenth of its speed.
 #[inline(never)]
-fn draw_rough(scene: &Scene<'_>, transfer: Transfer, tile: Tile, bytes: &mut [u8; BYTES]) {
+fn draw_sampled(scene: &Scene<'_>, transfer: Transfer, tile: Tile, bytes: &mut [u8; BYTES]) {
     fill(transfer, tile, bytes, |pixels| pixels.map(|pixel| pixel::trace(scene, pixel)));
 }
 

@@ -74,17 +74,18 @@ fn tiles(scene: &Scene<'_>, unit: Lockstep, y: u16, band: &mut [Light]) {
 #[must_use]
 pub fn lookups(scene: &Scene<'_>) -> Vec<u64> {
     let [width, height] = scene.settings().size;
-    let mut counts = vec![0; scene.settings().generations.into()];
-    for pixel in (0..height).flat_map(|y| (0..width).map(move |x| [x, y])) {
-        for sample in 0..scene.settings().samples {
+    let none = || vec![0; scene.settings().generations.into()];
+    let of_row = |y| {
+        let mut counts: Vec<u64> = none();
+        for (x, sample) in (0..width).flat_map(|x| scene.samples().map(move |sample| (x, sample))) {
             let mut lookups = 1;
-            pixel::trace_telling(scene, pixel, sample, |met| {
-                lookups += usize::from(scene.spheres()[met.sphere].surface.mirror != [0; 3]);
-            });
+            pixel::trace_telling(scene, [x, y], sample, |met| lookups += usize::from(met.is_seen));
             counts.iter_mut().take(lookups).for_each(|count| *count += 1);
         }
-    }
-    counts
+        counts
+    };
+    let sum = |a: Vec<u64>, b: Vec<u64>| a.into_iter().zip(b).map(|(a, b)| a + b).collect();
+    (0..height).into_par_iter().map(of_row).reduce(none, sum)
 }
 
 /// Light as a picture.

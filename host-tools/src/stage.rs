@@ -43,6 +43,11 @@ pub trait Stage: Send + Sync + std::fmt::Debug {
         false
     }
 
+    /// What a white sample adds to a sum: a kernel sums in its own words.
+    fn white(&self) -> u32 {
+        1 << 16
+    }
+
     /// Adds samples, by their numbers, of each pixel of a tile to sums, row by row, a sum a pixel; and the work that they took.
     /// Sums do not depend on the ranges that samples are added in. Nothing is added where no paths are followed.
     fn add_samples(&self, tile: Tile, samples: Range<u16>, sums: &mut [Sum]) -> Counts {

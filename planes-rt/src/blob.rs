@@ -1,6 +1,6 @@
 //! A scene as bytes, read in place: a blob of the kernel [`KERNEL`].
 //!
-//! `core_rt`'s prefix; a [`Header`]; the spheres, 28 bytes each; zeros up to a multiple of 8; four bytes of zero and the CRC-32 of all
+//! `core_rt`'s prefix; a [`Header`]; the spheres, 34 bytes each; zeros up to a multiple of 8; four bytes of zero and the CRC-32 of all
 //! that stands before it. All numbers are little-endian, and so is every machine that reads them in place.
 
 use core::fmt::{Display, Formatter};
@@ -47,8 +47,10 @@ pub struct Header {
     pub is_literal: u8,
     /// 1 where the picture's bytes are in proportion to light, 0 for sRGB.
     pub is_linear: u8,
+    /// 1 where paths are followed, else 0.
+    pub follows_paths: u8,
     /// Zero.
-    pub reserved: [u8; 4],
+    pub reserved: [u8; 3],
 }
 
 /// Why bytes are no scene.
@@ -84,7 +86,7 @@ impl Header {
     /// For a scene whose components lie at `middle + component / scale`, by the bits of these f64.
     #[must_use]
     pub fn new(scene: &Scene<'_>, transfer: Transfer, middle_bits: [u64; 3], scale_bits: u64) -> Self {
-        let Settings { widths, size, generations, outline, samples } = scene.settings;
+        let Settings { widths, size, generations, outline, samples, paths } = scene.settings;
         let bits = [widths.coordinate(), widths.product(), widths.determinant(), widths.t_fraction()];
         Self {
             middle_bits,
@@ -100,7 +102,8 @@ impl Header {
             samples,
             is_literal: (outline == Outline::Literal).into(),
             is_linear: (transfer == Transfer::Linear).into(),
-            reserved: [0; 4],
+            follows_paths: paths.into(),
+            reserved: [0; 3],
         }
     }
 
@@ -142,8 +145,8 @@ pub fn read(blob: &[u8]) -> Result<(Scene<'_>, Transfer), ReadError> {
     }
     let body = blob.get(PREFIX_SIZE..).ok_or(BlobError::Header)?;
     let (header, rest) = Header::ref_from_prefix(body).map_err(|_| BlobError::Header)?;
-    let flags_are_known = header.is_literal <= 1 && header.is_linear <= 1 && header.reserved == [0; 4];
-    if header.prefix() != prefix || !flags_are_known {
+    let flags = [header.is_literal, header.is_linear, header.follows_paths];
+    if header.prefix() != prefix || flags.iter().any(|&flag| flag > 1) || header.reserved != [0; 3] {
         return Err(BlobError::Header.into());
     }
     let (spheres, padding) =
@@ -159,6 +162,7 @@ pub fn read(blob: &[u8]) -> Result<(Scene<'_>, Transfer), ReadError> {
         generations: header.generations,
         outline: if header.is_literal == 1 { Outline::Literal } else { Outline::Nearest },
         samples: header.samples,
+        paths: header.follows_paths == 1,
     };
     let scene = Scene::new_checked(spheres, header.light, header.background, header.camera, settings);
     let transfer = if header.is_linear == 1 { Transfer::Linear } else { Transfer::Srgb };

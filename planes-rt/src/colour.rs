@@ -41,6 +41,8 @@ pub struct Surface {
     pub mirror: [u16; 3],
     /// How far what it reflects is strewn, as a share: 0 is a sharp mirror.
     pub roughness: u16,
+    /// The shares of what it sends on in all directions, of paths alone: at most [`SHARE_ONE`].
+    pub matt: [u16; 3],
 }
 
 impl Surface {
@@ -48,7 +50,7 @@ impl Surface {
     #[must_use]
     pub(crate) fn is_in_range(&self) -> bool {
         self.lit.iter().chain(&self.own).all(|&c| c <= LIGHT_MAX)
-            && self.mirror.iter().chain([&self.roughness]).all(|&c| c <= SHARE_ONE)
+            && self.mirror.iter().chain(&self.matt).chain([&self.roughness]).all(|&c| c <= SHARE_ONE)
     }
 
     /// What a channel sends under a cosine, both as in [`cosine`]: at most [`LIGHT_MAX`].
@@ -65,27 +67,12 @@ pub(crate) fn share_of(light: i32, share: i32) -> i32 {
     (light * share + (1 << (SHARE_BITS - 1))) >> SHARE_BITS
 }
 
-/// The mean of the light of so many samples, from 1, rounded to nearest.
+/// The mean of the light of so many samples, from 1, rounded to nearest: sums of 2^16 of them are below 2^28.
 #[inline(always)]
-pub(crate) fn mean(sum: [u32; 3], samples: u16) -> Light {
+#[must_use]
+pub fn mean(sum: [u32; 3], samples: u16) -> Light {
     let count = u32::from(samples.max(1));
     sum.map(|channel| ((channel + count / 2) / count) as u16)
-}
-
-/// The mean of the light of a pixel's samples, by their numbers.
-#[inline(always)]
-pub(crate) fn averaged(samples: u16, light: impl Fn(u16) -> Light) -> Light {
-    if samples == 1 {
-        return light(0);
-    }
-    let mut sum = [0; 3];
-    for number in 0..samples {
-        let light = light(number);
-        for channel in 0..3 {
-            sum[channel] += u32::from(light[channel]);
-        }
-    }
-    mean(sum, samples)
 }
 
 /// Bits of the two factors of a [`Cosine`]: their product stays below 2^31.
@@ -158,14 +145,20 @@ mod tests {
         assert_eq!(share_of(white, one), white);
         assert_eq!((share_of(white, 0), share_of(0, one)), (0, 0));
         assert_eq!((share_of(1, one / 2), share_of(1, one / 2 - 1)), (1, 0));
-        let surface =
-            Surface { lit: [LIGHT_MAX; 3], own: [0, 1, LIGHT_MAX], mirror: [SHARE_ONE; 3], roughness: SHARE_ONE };
+        let surface = Surface {
+            lit: [LIGHT_MAX; 3],
+            own: [0, 1, LIGHT_MAX],
+            mirror: [SHARE_ONE; 3],
+            roughness: SHARE_ONE,
+            matt: [SHARE_ONE; 3],
+        };
         assert!(surface.is_in_range());
         assert_eq!([0, 1, 2].map(|channel| surface.sent(channel, one)), [white; 3]);
         assert_eq!([0, 1, 2].map(|channel| surface.sent(channel, 0)), [0, 1, white]);
         assert!(!Surface { own: [0, 0, LIGHT_MAX + 1], ..surface }.is_in_range());
         assert!(!Surface { mirror: [SHARE_ONE + 1, 0, 0], ..surface }.is_in_range());
         assert!(!Surface { roughness: SHARE_ONE + 1, ..surface }.is_in_range());
+        assert!(!Surface { matt: [0, 0, SHARE_ONE + 1], ..surface }.is_in_range());
     }
 
     #[test]

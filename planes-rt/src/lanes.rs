@@ -10,14 +10,18 @@
 
 #![expect(clippy::needless_range_loop, reason = "a lane is a place in many arrays at once")]
 
+use core_rt::random;
+
 use crate::colour::{Cosine, LIGHT_MAX, Light, SHARE_ONE, mean, share_of};
 use crate::jitter::strewn;
-use crate::root::{digit, pair, split};
-use crate::scene::{Outline, Scene, Sphere};
-use crate::step::{
-    coefficients, determinant, difference, held, may_be_real, numerator, parameter, point, product, reflection,
-};
+use crate::path::{Onward, onward};
+use crate::scene::{Outline, Sample, Scene, Sphere};
+use crate::step::{difference, point, product, reflection};
 use crate::widths::Widths;
+
+mod search;
+
+use search::Search;
 
 /// A field of all lanes.
 type Row<const N: usize> = [i32; N];
@@ -43,21 +47,21 @@ fn any<const N: usize>(enabled: &Row<N>) -> bool {
     enabled.iter().fold(0, |any, lane| any | lane) != 0
 }
 
-/// The light of a tile's pixels, for a scene [without rough mirrors](Scene::is_rough), which has nothing of them in its code: one
-/// function with both would be slower by a third on a Cortex-M0. Places beyond the picture are those of its edge.
+/// The light of a tile's pixels, for a [plain](Scene::is_plain) scene, which has nothing of chance in its code: one function with
+/// both would be slower by a third on a Cortex-M0. Places beyond the picture are those of its edge.
 #[inline(always)]
 #[must_use]
 pub fn trace<const N: usize>(scene: &Scene<'_>, pixels: &[[u16; 2]; N]) -> [Light; N] {
-    sample::<N, false>(scene, pixels, 0)
+    sample::<N, false>(scene, pixels, Sample::numbered(0))
 }
 
 /// The same for any scene: the mean of its samples.
 #[inline(always)]
 #[must_use]
-pub fn trace_rough<const N: usize>(scene: &Scene<'_>, pixels: &[[u16; 2]; N]) -> [Light; N] {
+pub fn trace_sampled<const N: usize>(scene: &Scene<'_>, pixels: &[[u16; 2]; N]) -> [Light; N] {
     let mut sums = [[0; 3]; N];
-    for number in 0..scene.settings.samples {
-        let light = sample::<N, true>(scene, pixels, number);
+    for sample in scene.samples() {
+        let light = self::sample::<N, true>(scene, pixels, sample);
         for lane in 0..N {
             for channel in 0..3 {
                 sums[lane][channel] += u32::from(light[lane][channel]);
@@ -69,13 +73,18 @@ pub fn trace_rough<const N: usize>(scene: &Scene<'_>, pixels: &[[u16; 2]; N]) ->
 
 /// The light of one sample.
 #[inline(always)]
-fn sample<const N: usize, const ROUGH: bool>(scene: &Scene<'_>, pixels: &[[u16; 2]; N], number: u16) -> [Light; N] {
-    let mut lanes = Lanes::new(scene, pixels);
+fn sample<const N: usize, const SAMPLED: bool>(
+    scene: &Scene<'_>,
+    pixels: &[[u16; 2]; N],
+    sample: Sample,
+) -> [Light; N] {
+    let mut lanes =
+        Lanes::new(|lane| if SAMPLED { scene.ray_of(pixels[lane], sample) } else { scene.ray(pixels[lane]) });
     for generation in 0..scene.settings.generations {
         if !any(&lanes.alive) {
             break;
         }
-        lanes.generation::<ROUGH>(scene, pixels, [number, generation]);
+        lanes.generation::<SAMPLED>(scene, pixels, sample, generation);
     }
     let mut light = [[0; 3]; N];
     for lane in 0..N {
@@ -103,7 +112,7 @@ struct Lanes<const N: usize> {
 
 impl<const N: usize> Lanes<N> {
     #[inline(always)]
-    fn new(scene: &Scene<'_>, pixels: &[[u16; 2]; N]) -> Self {
+    fn new(ray: impl Fn(usize) -> ([i16; 3], [i16; 3])) -> Self {
         let mut lanes = Self {
             origin: [[0; N]; 3],
             direction: [[0; N]; 3],
@@ -113,7 +122,7 @@ impl<const N: usize> Lanes<N> {
             alive: [-1; N],
         };
         for lane in 0..N {
-            let (origin, direction) = scene.ray(pixels[lane]);
+            let (origin, direction) = ray(lane);
             set(&mut lanes.origin, lane, -1, origin);
             set(&mut lanes.direction, lane, -1, direction);
         }
@@ -122,18 +131,15 @@ impl<const N: usize> Lanes<N> {
 
     /// All spheres once; then lanes that met none see the background and are done.
     #[inline(always)]
-    fn generation<const ROUGH: bool>(
+    fn generation<const SAMPLED: bool>(
         &mut self,
         scene: &Scene<'_>,
         pixels: &[[u16; 2]; N],
-        [sample, generation]: [u16; 2],
+        sample: Sample,
+        generation: u16,
     ) {
         let widths = scene.settings.widths;
-        let mut search = Search { a: [0; N], enabled: self.alive, t: [widths.product_max(); N], nearest: [-1; N] };
-        for lane in 0..N {
-            let direction = get(&self.direction, lane);
-            search.a[lane] = product(direction, direction, widths);
-        }
+        let mut search = Search::new(self, widths);
         let mut first = 0;
         for group in scene.spheres.chunks(u32::BITS as usize) {
             let mut candidates = search.candidates(self, group, widths);
@@ -142,7 +148,7 @@ impl<const N: usize> Lanes<N> {
                 candidates &= candidates - 1;
                 let Some(met) = search.sphere(self, sphere, number, widths) else { continue };
                 if scene.settings.outline == Outline::Literal {
-                    self.shade(scene, sphere, &search.t, &met);
+                    self.shade::<SAMPLED>(scene, sphere, &search.t, &met);
                     for lane in 0..N {
                         search.enabled[lane] &= !met[lane];
                     }
@@ -157,7 +163,7 @@ impl<const N: usize> Lanes<N> {
                     met[lane] = mask(search.nearest[lane] == number);
                 }
                 if any(&met) {
-                    self.shade(scene, sphere, &search.t, &met);
+                    self.shade::<SAMPLED>(scene, sphere, &search.t, &met);
                 }
             }
         }
@@ -170,16 +176,23 @@ impl<const N: usize> Lanes<N> {
             self.alive[lane] &= !missed;
         }
         if any(&self.alive) {
+            if SAMPLED && scene.settings.paths {
+                for lane in 0..N {
+                    self.go_on(lane, scene, search.nearest[lane], sample.of(pixels[lane]), generation);
+                }
+                return;
+            }
             let goes_on = self.alive;
             self.reflect(widths, &goes_on);
-            if ROUGH {
+            if SAMPLED {
                 for lane in 0..N {
-                    let (nearest, [x, y]) = (search.nearest[lane] & goes_on[lane], pixels[lane]);
-                    let met = scene.spheres.get(nearest as usize).filter(|_| goes_on[lane] != 0);
+                    let met = usize::try_from(search.nearest[lane]).ok().filter(|_| goes_on[lane] != 0);
+                    let met = met.and_then(|number| scene.spheres.get(number));
                     let roughness = met.map_or(0, |sphere| sphere.surface.roughness);
                     if roughness > 0 {
                         let (mirrored, normal) = (get(&self.direction, lane), get(&self.normal, lane));
-                        let direction = strewn(mirrored, normal, roughness, [x, y, sample, generation], widths);
+                        let [height, turn, ..] = sample.of(pixels[lane]).numbers(generation.into());
+                        let direction = strewn(mirrored, normal, roughness, [height, turn], widths);
                         set(&mut self.direction, lane, -1, direction);
                     }
                 }
@@ -187,9 +200,25 @@ impl<const N: usize> Lanes<N> {
         }
     }
 
+    /// A lane's path goes on from the sphere that it met, or ends.
+    #[inline(always)]
+    fn go_on(&mut self, lane: usize, scene: &Scene<'_>, met: i32, of: random::Sample, generation: u16) {
+        let met = usize::try_from(met).ok().filter(|_| self.alive[lane] != 0);
+        let Some(sphere) = met.and_then(|number| scene.spheres.get(number)) else { return };
+        let along = [get(&self.direction, lane), get(&self.normal, lane)];
+        let share = [0, 1, 2].map(|channel| self.share[channel][lane]);
+        match onward(&sphere.surface, along, share, (of, u32::from(generation) + 1), scene.settings.widths) {
+            Some(Onward { direction, share }) => {
+                set(&mut self.direction, lane, -1, direction);
+                (0..3).for_each(|channel| self.share[channel][lane] = share[channel]);
+            }
+            None => self.alive[lane] = 0,
+        }
+    }
+
     /// Moves the enabled lanes to a sphere and shades them.
     #[inline(always)]
-    fn shade(&mut self, scene: &Scene<'_>, sphere: &Sphere, t: &Row<N>, enabled: &Row<N>) {
+    fn shade<const SAMPLED: bool>(&mut self, scene: &Scene<'_>, sphere: &Sphere, t: &Row<N>, enabled: &Row<N>) {
         let widths = scene.settings.widths;
         let mut cosines = [0; N];
         for lane in 0..N {
@@ -202,6 +231,16 @@ impl<const N: usize> Lanes<N> {
         let cosine = Cosine::new(sphere.radius.into(), widths);
         for lane in 0..N {
             cosines[lane] = cosine.of(product(get(&self.normal, lane), scene.light, widths));
+        }
+        if SAMPLED && scene.settings.paths {
+            for lane in 0..N {
+                for channel in 0..3 {
+                    let seen = share_of(sphere.surface.sent(channel, cosines[lane]), self.share[channel][lane]);
+                    let light = &mut self.light[channel][lane];
+                    *light = (*light + (seen & enabled[lane])).min(LIGHT_MAX.into());
+                }
+            }
+            return;
         }
         for lane in 0..N {
             let mut left = 0;
@@ -224,89 +263,6 @@ impl<const N: usize> Lanes<N> {
             set(&mut self.direction, lane, enabled[lane], direction);
         }
     }
-}
-
-/// What the lanes hold within a generation.
-struct Search<const N: usize> {
-    /// |d|^2.
-    a: Row<N>,
-    /// Of lanes that still look for a sphere.
-    enabled: Row<N>,
-    /// The least t so far.
-    t: Row<N>,
-    /// The number of its sphere, or -1.
-    nearest: Row<N>,
-}
-
-impl<const N: usize> Search<N> {
-    /// Which of the first 32 spheres some lane may meet, as bits: all that one does meet, and few others. There is nothing to
-    /// wait for or to guess between one sphere and the next, so that a processor works on several at once.
-    #[inline(always)]
-    fn candidates(&self, lanes: &Lanes<N>, spheres: &[Sphere], widths: Widths) -> u32 {
-        (0..u32::BITS).zip(spheres).fold(0, |candidates, (bit, sphere)| {
-            let radius = i32::from(sphere.radius);
-            let mut met = 0;
-            for lane in 0..N {
-                let (origin, direction) = (get(&lanes.origin, lane), get(&lanes.direction, lane));
-                let (b, c) = coefficients(origin, direction, sphere.centre, radius * radius, widths);
-                met |= self.enabled[lane] & mask(b < 0) & mask(may_be_real(self.a[lane], b, c, widths));
-            }
-            candidates | u32::from(met != 0) << bit
-        })
-    }
-
-    /// Intersects all rays with a sphere; the lanes for which it is the nearest so far, if there are any.
-    #[inline(always)]
-    fn sphere(&mut self, lanes: &Lanes<N>, sphere: &Sphere, number: i32, widths: Widths) -> Option<Row<N>> {
-        let radius = i32::from(sphere.radius);
-        let (mut b, mut c) = ([0; N], [0; N]);
-        for lane in 0..N {
-            let (origin, direction) = (get(&lanes.origin, lane), get(&lanes.direction, lane));
-            (b[lane], c[lane]) = coefficients(origin, direction, sphere.centre, radius * radius, widths);
-        }
-        // In a loop of its own: products of 64 bits would halve the vectors of the one before.
-        let (mut determinants, mut met) = ([0; N], [0; N]);
-        for lane in 0..N {
-            determinants[lane] = determinant(self.a[lane], b[lane], c[lane]);
-            let imaginary = (determinants[lane] >> 63) as i32;
-            met[lane] = self.enabled[lane] & mask(b[lane] < 0) & !imaginary;
-        }
-        if !any(&met) {
-            return None;
-        }
-        let roots = roots(&determinants, &met, widths);
-        let mut t = [0; N];
-        for lane in 0..N {
-            let above = numerator(b[lane], roots[lane]);
-            met[lane] &= mask(above >= 0);
-            t[lane] = above & met[lane];
-        }
-        for lane in 0..N {
-            t[lane] = parameter(t[lane], self.a[lane], widths);
-        }
-        for lane in 0..N {
-            met[lane] &= mask(t[lane] <= self.t[lane]);
-            self.t[lane] = select(met[lane], t[lane], self.t[lane]);
-            self.nearest[lane] = select(met[lane], number, self.nearest[lane]);
-        }
-        any(&met).then_some(met)
-    }
-}
-
-/// The roots of the determinants as their words hold them, a digit of all lanes at a time.
-#[inline(always)]
-fn roots<const N: usize>(determinants: &[i64; N], enabled: &Row<N>, widths: Widths) -> Row<N> {
-    let (mut low, mut high) = ([0; N], [0; N]);
-    for lane in 0..N {
-        [low[lane], high[lane]] = split(held(determinants[lane], widths) & i64::from(enabled[lane]));
-    }
-    let (mut rest, mut root) = ([0; N], [0; N]);
-    for place in (0..widths.determinant().div_ceil(2)).rev() {
-        for lane in 0..N {
-            (rest[lane], root[lane]) = digit(rest[lane], root[lane], pair([low[lane], high[lane]], place));
-        }
-    }
-    root
 }
 
 #[inline(always)]

@@ -12,7 +12,8 @@
 //! # Tracing
 //! `step` has what a processor does with one ray and one sphere. [`pixel`] does it for one pixel, and skips what is not
 //! needed; [`lanes`] does it for a tile of pixels at once, and skips what none of them needs. The pictures are the same.
-//! Where there are rough mirrors, several samples of a pixel are averaged, and [`jitter`] strews what is reflected.
+//! Where there are several samples of a pixel, they are averaged; [`jitter`] strews what rough mirrors reflect, and where a scene
+//! follows paths, `path` says which way they go on.
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -21,6 +22,7 @@ pub mod camera;
 pub mod colour;
 pub mod jitter;
 pub mod lanes;
+mod path;
 pub mod pixel;
 pub mod root;
 pub mod scene;

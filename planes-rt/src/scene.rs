@@ -2,11 +2,12 @@
 
 use core::fmt::{Display, Formatter};
 
+use core_rt::random;
+use core_rt::samples::{MAX_SAMPLES, Place, Places};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 use crate::camera::Camera;
 use crate::colour::{LIGHT_MAX, Light, Surface};
-use crate::jitter::SAMPLES_MAX;
 use crate::widths::Widths;
 
 /// A sphere, in components.
@@ -42,8 +43,34 @@ pub struct Settings {
     pub generations: u16,
     /// Where a pixel ends.
     pub outline: Outline,
-    /// Samples of a pixel, from 1, which differ by what rough mirrors do; a scene without any has one.
+    /// Samples of a pixel, 1 to [`MAX_SAMPLES`]: one through its middle, several through places all over it.
     pub samples: u16,
+    /// Whether rays go on at random, from what is matt too.
+    pub paths: bool,
+}
+
+/// One of a pixel's samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sample {
+    /// Its number, from 0.
+    pub number: u16,
+    /// How far right and down of the middle it is, Q16 in [-2^15, 2^15), where that is the same in all pixels; a path is where chance
+    /// says.
+    off_middle_q16: [i32; 2],
+}
+
+impl Sample {
+    /// The one through the middle, or a path of this number.
+    #[must_use]
+    pub const fn numbered(number: u16) -> Self {
+        Self { number, off_middle_q16: [0; 2] }
+    }
+
+    /// What random numbers are drawn for.
+    #[inline(always)]
+    pub(crate) fn of(self, pixel: [u16; 2]) -> random::Sample {
+        random::Sample { pixel, number: self.number }
+    }
 }
 
 /// A scene that was found to be within its words.
@@ -55,14 +82,14 @@ pub struct Scene<'a> {
     pub(crate) background: Light,
     pub(crate) camera: Camera,
     pub(crate) settings: Settings,
-    /// Whether anything strews what it reflects.
-    pub(crate) is_rough: bool,
+    /// Whether one ray through the middle of a pixel, by sharp mirrors, is all there is.
+    pub(crate) is_plain: bool,
 }
 
 /// Why a scene cannot be traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SceneError {
-    /// A sphere of this index exceeds its words, has no radius, or sends more than white.
+    /// A sphere of this index exceeds its words, has no radius, or sends more than white; or goes on diffusely without paths.
     Sphere(usize),
     /// There are more spheres than numbers for them: 2^15 - 1.
     Count(usize),
@@ -72,7 +99,7 @@ pub enum SceneError {
     Background,
     /// The picture has no pixels, or rays that exceed their words.
     Camera,
-    /// There are no samples, more than [`SAMPLES_MAX`], or several of a scene in which nothing is random.
+    /// There are no samples, or more than [`MAX_SAMPLES`].
     Samples(u16),
 }
 
@@ -83,9 +110,7 @@ impl Display for SceneError {
             Self::Count(count) => write!(f, "{count} spheres; there are numbers for 32767"),
             Self::Light => f.write_str("the light's vector exceeds its words"),
             Self::Background => f.write_str("the background is brighter than white"),
-            Self::Samples(count) => {
-                write!(f, "{count} samples of a pixel; there are 1 to {SAMPLES_MAX}, and 1 where no mirror is rough")
-            }
+            Self::Samples(count) => write!(f, "{count} samples of a pixel; there are 1 to {MAX_SAMPLES}"),
             Self::Camera => f.write_str("the picture has no pixels, or its rays exceed their words"),
         }
     }
@@ -112,7 +137,8 @@ impl<'a> Scene<'a> {
         }
         let is_wrong = |sphere: &Sphere| {
             let radius_is_held = sphere.radius >= 1 && i32::from(sphere.radius) <= most;
-            !(is_held(sphere.centre) && radius_is_held && sphere.surface.is_in_range())
+            let is_followed = settings.paths || sphere.surface.matt == [0; 3];
+            !(is_held(sphere.centre) && radius_is_held && sphere.surface.is_in_range() && is_followed)
         };
         if let Some(index) = spheres.iter().position(is_wrong) {
             return Err(SceneError::Sphere(index));
@@ -123,21 +149,34 @@ impl<'a> Scene<'a> {
         if background.iter().any(|&channel| channel > LIGHT_MAX) {
             return Err(SceneError::Background);
         }
-        let most = if spheres.iter().any(|sphere| sphere.surface.roughness > 0) { SAMPLES_MAX } else { 1 };
-        if !(1..=most).contains(&settings.samples) {
+        if !(1..=MAX_SAMPLES).contains(&settings.samples) {
             return Err(SceneError::Samples(settings.samples));
         }
         let size = settings.size;
         if size.contains(&0) || !camera.origin.holds(size) || !camera.direction.holds(size) {
             return Err(SceneError::Camera);
         }
-        Ok(Self { spheres, light, background, camera, settings, is_rough: most > 1 })
+        let is_sharp = spheres.iter().all(|sphere| sphere.surface.roughness == 0);
+        let is_plain = is_sharp && settings.samples == 1 && !settings.paths;
+        Ok(Self { spheres, light, background, camera, settings, is_plain })
     }
 
-    /// Whether anything strews what it reflects.
+    /// Whether one ray through the middle of a pixel, by sharp mirrors, is all there is.
     #[must_use]
-    pub fn is_rough(&self) -> bool {
-        self.is_rough
+    pub fn is_plain(&self) -> bool {
+        self.is_plain
+    }
+
+    /// The samples of every pixel.
+    #[inline(always)]
+    pub fn samples(&self) -> impl Iterator<Item = Sample> {
+        let Settings { samples, paths, .. } = self.settings;
+        // One is in the middle, and takes no division.
+        let mut places = (samples > 1 && !paths).then(|| Places::of(samples));
+        (0..samples).map(move |number| {
+            let place = places.as_mut().and_then(Iterator::next);
+            Sample { number, off_middle_q16: place.map_or([0; 2], Place::off_middle) }
+        })
     }
 
     /// How it is traced.
@@ -164,13 +203,37 @@ impl<'a> Scene<'a> {
         self.background
     }
 
+    /// The nearest pixel of the picture.
+    #[inline(always)]
+    fn within(&self, [x, y]: [u16; 2]) -> [i32; 2] {
+        let [width, height] = self.settings.size;
+        [i32::from(x.min(width - 1)), i32::from(y.min(height - 1))]
+    }
+
     /// The origin and the direction of a pixel's ray; places beyond the picture are those of its edge.
     #[inline(always)]
     #[must_use]
-    pub fn ray(&self, [x, y]: [u16; 2]) -> ([i16; 3], [i16; 3]) {
-        let [width, height] = self.settings.size;
-        let (x, y) = (i32::from(x.min(width - 1)), i32::from(y.min(height - 1)));
+    pub fn ray(&self, pixel: [u16; 2]) -> ([i16; 3], [i16; 3]) {
+        let [x, y] = self.within(pixel);
         let widths = self.settings.widths;
         (self.camera.origin.at(x, y, widths), self.camera.direction.at(x, y, widths))
+    }
+
+    /// The same of one of its samples.
+    #[inline(always)]
+    pub(crate) fn ray_of(&self, pixel: [u16; 2], sample: Sample) -> ([i16; 3], [i16; 3]) {
+        let off_q16 = if self.settings.paths {
+            let [right, down, ..] = sample.of(pixel).numbers(0);
+            Place { right_q16: (right >> 16) as u16, down_q16: (down >> 16) as u16 }.off_middle()
+        } else {
+            sample.off_middle_q16
+        };
+        if off_q16 == [0; 2] {
+            return self.ray(pixel);
+        }
+        let [x, y] = self.within(pixel);
+        let Camera { origin, direction } = &self.camera;
+        let widths = self.settings.widths;
+        (origin.off_middle(x, y, off_q16, widths), direction.off_middle(x, y, off_q16, widths))
     }
 }

@@ -46,16 +46,16 @@ impl Lockstep {
         }
     }
 
-    /// The light of a tile's pixels, as [`lanes::trace`] or [`lanes::trace_rough`].
+    /// The light of a tile's pixels, as [`lanes::trace`] or [`lanes::trace_sampled`].
     #[must_use]
     pub fn trace<const N: usize>(self, scene: &Scene<'_>, pixels: &[[u16; 2]; N]) -> [Light; N] {
         match self.0 {
-            Unit::Portable if scene.is_rough() => lanes::trace_rough(scene, pixels),
-            Unit::Portable => lanes::trace(scene, pixels),
+            Unit::Portable if scene.is_plain() => lanes::trace(scene, pixels),
+            Unit::Portable => lanes::trace_sampled(scene, pixels),
             #[cfg(target_arch = "x86_64")]
             Unit::Avx2 => {
                 let trace: unsafe fn(&Scene<'_>, &[[u16; 2]; N]) -> [Light; N] =
-                    if scene.is_rough() { trace_rough_avx2 } else { trace_avx2 };
+                    if scene.is_plain() { trace_avx2 } else { trace_sampled_avx2 };
                 // SAFETY: the variant is private, and `detected` makes it only where the processor has AVX2, which is all
                 // that the functions ask for.
                 #[allow(unsafe_code)]
@@ -77,6 +77,6 @@ fn trace_avx2<const N: usize>(scene: &Scene<'_>, pixels: &[[u16; 2]; N]) -> [Lig
 /// Likewise.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn trace_rough_avx2<const N: usize>(scene: &Scene<'_>, pixels: &[[u16; 2]; N]) -> [Light; N] {
-    lanes::trace_rough(scene, pixels)
+fn trace_sampled_avx2<const N: usize>(scene: &Scene<'_>, pixels: &[[u16; 2]; N]) -> [Light; N] {
+    lanes::trace_sampled(scene, pixels)
 }

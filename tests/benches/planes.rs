@@ -27,6 +27,7 @@ fn spheres() -> Vec<Sphere> {
             own: [100; 3],
             mirror: [if i % 2 == 0 { 1200 } else { 400 }; 3],
             roughness: 0,
+            matt: [0; 3],
         },
     };
     (0..16).map(sphere).collect()
@@ -41,7 +42,8 @@ fn main() {
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     for outline in [Outline::Nearest, Outline::Literal] {
-        let settings = Settings { widths: Widths::PIXEL_PLANES, size: SIZE, generations: 3, outline, samples: 1 };
+        let settings =
+            Settings { widths: Widths::PIXEL_PLANES, size: SIZE, generations: 3, outline, samples: 1, paths: false };
         let scene = Scene::new_checked(&spheres, [1000, 1400, 1000], [300, 400, 500], camera, settings);
         let scene = scene.expect("in range");
         let seconds = |way| {

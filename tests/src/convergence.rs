@@ -7,7 +7,7 @@ use core_rt::path::Sum;
 use core_rt::render::Tile;
 use glam::DVec3;
 use host_tools::engine::Engine;
-use host_tools::model::Model;
+use host_tools::model::{Background, Light, LightKind, Material, MaterialKind, Model, Projection, Sphere};
 use host_tools::prepare::Options;
 use host_tools::reference::Reference;
 use host_tools::report::page::fit;
@@ -17,9 +17,6 @@ use rayon::prelude::*;
 
 /// The exponents of the error over the number of samples that count as -1/2.
 pub const ALLOWED: RangeInclusive<f64> = -0.55..=-0.45;
-
-/// One, as sums of a kernel have it.
-const ONE: f64 = 65536.0;
 
 /// The root of the mean square of the difference, over all channels: linear light, of which white is 1.
 ///
@@ -58,6 +55,47 @@ pub fn scene(size: [u32; 2]) -> Model {
             _ => 0.0,
         };
     }
+    model
+}
+
+/// Of a colour, diffuse and mirrored shares of it, and how rough its mirror is; nothing else.
+#[must_use]
+pub fn material(colour: DVec3, weights: [f64; 2], roughness: f64) -> Material {
+    let [diffuse, mirrored] = weights;
+    Material {
+        kind: MaterialKind::Mirror,
+        colour,
+        roughness,
+        weights: Some([diffuse, 0.0, mirrored, 0.0]),
+        ..Material::default()
+    }
+}
+
+/// A matt ball, a rough and a half mirror and one that shines, close to each other: what `docs/SHADING.md` says of them is all that
+/// the tracer of 1994 knows too, since nothing is shadowed.
+#[must_use]
+pub fn spheres(size: [u32; 2]) -> Model {
+    let shining = Material { emission: DVec3::new(0.9, 0.7, 0.3), ..material(DVec3::splat(0.1), [1.0, 0.0], 0.0) };
+    let mut model = Model {
+        materials: vec![
+            material(DVec3::new(0.9, 0.4, 0.2), [1.0, 0.0], 0.0),
+            material(DVec3::new(0.7, 0.8, 0.9), [0.0, 1.0], 0.3),
+            material(DVec3::new(0.5, 0.9, 0.6), [0.5, 0.4], 0.0),
+            shining,
+        ],
+        spheres: [[-1.05, -0.2, 0.0, 1.0], [1.0, 0.0, -0.3, 1.0], [0.1, 0.2, 1.5, 0.6], [0.0, 1.6, 0.4, 0.7]]
+            .into_iter()
+            .zip(0..)
+            .map(|([x, y, z, radius], material)| Sphere { centre: DVec3::new(x, y, z), radius, material })
+            .collect(),
+        lights: vec![Light::new(LightKind::Directional(DVec3::new(0.5, -1.0, -1.0)), DVec3::splat(0.6))],
+        background: Background::Colour(DVec3::new(0.2, 0.3, 0.5)),
+        ..Model::default()
+    };
+    model.camera.position = DVec3::new(0.0, 0.5, 6.0);
+    model.camera.projection = Projection::Perspective { fov_y: 0.8 };
+    let render = &mut model.render;
+    (render.size, render.paths, render.shadows, render.max_depth) = (size, true, false, 6);
     model
 }
 
@@ -114,7 +152,7 @@ pub fn errors(
         let mut picture = vec![DVec3::ZERO; truth.len()];
         for (place, sum) in tiles.iter().zip(&sums).flat_map(|(tile, sums)| tile.places().zip(sums)) {
             let pixel = usize::from(place[1]) * usize::from(width) + usize::from(place[0]);
-            picture[pixel] = DVec3::from_array(sum.map(f64::from)) / (ONE * f64::from(count));
+            picture[pixel] = DVec3::from_array(sum.map(f64::from)) / (f64::from(stage.white()) * f64::from(count));
         }
         (count, rmse(&picture, truth))
     };

@@ -10,6 +10,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use host_tools::files;
+use study::chance::Chance;
 use study::machine::Machine;
 use study::paths::{Extent, Paths};
 use study::planes::{Planes, SIZE as PLANES_SIZE};
@@ -70,10 +71,11 @@ fn run(quick: bool) -> Result<(), String> {
 /// The tracer of 1994, which is quickly measured.
 fn planes() -> Result<(), String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
-    let (figures, machine) = (Planes::measure(PLANES_SIZE), Machine::measure(PLANES_SIZE));
+    let (figures, chance) = (Planes::measure(PLANES_SIZE), Chance::measure());
+    let machine = Machine::measure(PLANES_SIZE);
     let write =
         |name: &str, bytes: &[u8]| files::write_atomically(&root.join(name), bytes).map_err(|error| error.to_string());
-    write("PLANES.md", (figures.document() + &machine.document()).as_bytes())?;
+    write("PLANES.md", (figures.document() + &chance.document() + &machine.document()).as_bytes())?;
     write("studies/planes-machine.svg", machine.plot().as_bytes())?;
     write("studies/planes.svg", figures.plot().as_bytes())?;
     for (picture, name) in figures.pictures.iter().zip(["literal", "nearest"]) {

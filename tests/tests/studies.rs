@@ -13,6 +13,7 @@ use core_rt::scene::Scene;
 use host_tools::files;
 use host_tools::prepare::{Options, prepare};
 use host_tools::tree::TreeOptions;
+use study::chance::Chance;
 use study::degenerates::{self, Degenerates};
 use study::edge_shift::{self, EdgeShift, Thinnest};
 use study::leaf_threshold::{LeafThreshold, Row};
@@ -290,8 +291,9 @@ fn the_document_on_the_tracer_of_1994_is_of_the_tracer_as_it_is() {
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
     let renew = "renew it with `cargo xtask planes`";
     let read = |name: &str| String::from_utf8(files::read(&docs.join(name)).unwrap()).unwrap();
-    let (figures, machine) = (Planes::measure(planes::SIZE), Machine::measure(planes::SIZE));
-    let document = figures.document() + &machine.document();
+    let (figures, chance) = (Planes::measure(planes::SIZE), Chance::measure());
+    let machine = Machine::measure(planes::SIZE);
+    let document = figures.document() + &chance.document() + &machine.document();
     assert!(tables_are_whole(&document));
     assert_eq!(read("PLANES.md"), document, "{renew}");
     assert_eq!(read("studies/planes-machine.svg"), machine.plot(), "{renew}");
@@ -300,11 +302,15 @@ fn the_document_on_the_tracer_of_1994_is_of_the_tracer_as_it_is() {
         let path = docs.join(format!("studies/planes-{name}.png"));
         assert_eq!(host_tools::picture::Picture::read_png(&path).unwrap(), *picture, "{name}: {renew}");
     }
-    assert!(figures.verdicts().iter().all(|verdict| verdict.holds));
+    assert!(figures.verdicts().iter().all(|verdict| verdict.holds) && chance.verdict().holds);
     // A tracer whose reflections are wrong with 6 bits too bears nothing out.
     let mut wrong = figures;
     wrong.rows.iter_mut().for_each(|row| (row.wrong, row.up_to_2) = (row.rays, 0));
     assert!(wrong.verdicts().iter().all(|verdict| !verdict.holds));
+    // Nor do samples that are the same.
+    let mut same = chance;
+    same.row.errors.iter_mut().for_each(|(_, error)| *error = 0.1);
+    assert!(!same.verdict().holds);
 }
 
 #[test]

@@ -10,7 +10,7 @@ use core_rt::random::Sample;
 use core_rt::render::Tile;
 use glam::DVec3;
 use host_tools::engine::{self, Engine};
-use host_tools::model::{Background, Camera, Material, Model, Projection, RenderSettings, Triangle};
+use host_tools::model::{Background, Camera, Material, Model, Projection, RenderSettings, Sphere, Triangle};
 use host_tools::prepare::Options;
 
 const SIGMAS: f64 = 6.0;
@@ -114,6 +114,20 @@ fn plane(size: u32) -> Model {
     }
 }
 
+/// The same of spheres: so small a part of a matt one that all of its pixels see as much of another one that shines.
+fn spheres(size: u32) -> Model {
+    let shining = Material { emission: DVec3::ONE, colour: DVec3::ZERO, ..Material::default() };
+    let sphere = |x, material| Sphere { centre: DVec3::new(x, 0.0, 0.0), radius: 1.0, material };
+    let mut model = plane(size);
+    (model.spheres, model.triangles, model.positions) = (vec![sphere(-1.1, 0), sphere(1.1, 1)], vec![], vec![]);
+    model.materials.push(shining);
+    model.background = DVec3::ZERO.into();
+    model.camera.position = DVec3::new(-0.5, 0.0, 3.0);
+    model.camera.look_at = DVec3::new(-0.5, 0.0, 0.0);
+    model.camera.projection = Projection::Orthographic { height: 0.004 };
+    model
+}
+
 /// The light of samples of a picture that is rendered tile by tile.
 fn rendered(engine: &dyn Engine, model: &Model, samples: std::ops::Range<u16>, tile: u16) -> Vec<f64> {
     let size = model.render.size.map(|side| side as u16);
@@ -132,11 +146,12 @@ fn rendered(engine: &dyn Engine, model: &Model, samples: std::ops::Range<u16>, t
 
 #[test]
 fn no_edge_of_a_tile_shows() {
-    let model = plane(SIDE as u32);
-    for kernel in ["exact14", "exact29", "hanika-cons", "f32"] {
+    let (plane, spheres) = (plane(SIDE as u32), spheres(SIDE as u32));
+    for kernel in ["exact14", "exact29", "hanika-cons", "f32", "planes12"] {
         let engine = engine::by_name(kernel).expect("a kernel of this name");
+        let model = if kernel == "planes12" { &spheres } else { &plane };
         for samples in [0..1, 1..2, 0..4] {
-            let noise = Noise::new(rendered(engine, &model, samples.clone(), 32));
+            let noise = Noise::new(rendered(engine, model, samples.clone(), 32));
             for tile in [8, 16, 32] {
                 let beyond = beyond(&noise, tile);
                 assert!(beyond.is_empty(), "{kernel}, samples {samples:?}, tiles of {tile}: {beyond:?}");

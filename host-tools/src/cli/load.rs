@@ -127,7 +127,7 @@ impl SceneArguments {
         self.kernel.as_deref() == Some(planes::NAME)
     }
 
-    /// Reads a model for that kernel, which has neither a tree nor samples.
+    /// Reads a model for that kernel, which has no tree.
     pub(super) fn model_for_planes(&self) -> Result<Model, Failure> {
         let path = self.scene.display();
         if !self.is_model() {
@@ -136,22 +136,14 @@ impl SceneArguments {
         if self.leaf.is_some()
             || self.prefer.is_some()
             || self.grid_bits.is_some()
-            || self.paths.is_some()
             || self.format.is_some()
             || self.knobs.any()
         {
             return Err(Failure::input(
-                "--leaf, --prefer, --grid-bits, --paths, --format and the knobs of arithmetic are other kernels'; planes12 has \
-                 none of them",
+                "--leaf, --prefer, --grid-bits, --format and the knobs of arithmetic are other kernels'; planes12 has none of them",
             ));
         }
-        let model = self.model()?;
-        if self.samples.is_some() && model.materials.iter().all(|material| material.roughness == 0.0) {
-            return Err(Failure::input(
-                "planes12 has several samples of rough mirrors alone, and no material has a roughness; leave out --samples",
-            ));
-        }
-        Ok(model)
+        self.model()
     }
 
     /// Whether the scene is not a blob, by its name.

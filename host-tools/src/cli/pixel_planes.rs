@@ -146,6 +146,16 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         warn("the machine is the text's, whose mirrors are sharp; `intray render --kernel planes12` has rough ones");
         model.materials.iter_mut().for_each(|material| material.roughness = 0.0);
     }
+    if model.render.paths {
+        warn("the machine is the text's, whose program follows no paths; `intray render --kernel planes12` does");
+        model.render.paths = false;
+    }
+    if model.render.samples > 1 {
+        warn(
+            "the machine is the text's, with one ray through the middle of each pixel; `intray render --kernel planes12` has more",
+        );
+        model.render.samples = 1;
+    }
     let named = |error: &dyn std::fmt::Display| Failure::input(format!("{}: {error}", arguments.scene.scene.display()));
     let options = Options { widths, outline, direction: arguments.direction };
     let planes = Planes::new(&model, &options).map_err(|error| named(&error))?;

@@ -166,8 +166,10 @@ pub(super) fn emulate(wanted: Emulation<'_>) -> Result<(), Failure> {
         return Err(failure(EmulateError::Unequal { board: board.name, first, second }));
     }
     picture.write_png(path)?;
-    let reflected: u64 = planes::lookups(&traced).iter().skip(1).sum();
-    let rays = pixels + reflected;
+    let lookups = planes::lookups(&traced);
+    let primary = lookups.first().copied().unwrap_or_default();
+    let reflected: u64 = lookups.iter().skip(1).sum();
+    let rays = primary + reflected;
     let instructions = counts.as_ref().map(|counts| counts.instructions);
     let report = Emulated {
         board: board.name,
@@ -179,7 +181,7 @@ pub(super) fn emulate(wanted: Emulation<'_>) -> Result<(), Failure> {
         spheres: traced.spheres().len(),
         generations: traced.settings().generations,
         rays,
-        primary_rays: pixels,
+        primary_rays: primary,
         reflection_rays: reflected,
         box_tests: 0,
         triangle_tests: 0,

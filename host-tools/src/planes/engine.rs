@@ -17,7 +17,7 @@ use core_rt::profile::Needs;
 use core_rt::stats::Counts;
 use planes_rt::blob::{KERNEL, ReadError, read};
 use planes_rt::pixel;
-use planes_rt::scene::Scene;
+use planes_rt::scene::{Sample, Scene};
 use planes_simd::Lockstep;
 
 use super::scene::{Options as Words, Planes};
@@ -63,8 +63,14 @@ fn counts(scene: &Scene<'_>) -> Counts {
 
 /// What the rays of a pixel saw.
 fn seen(scene: &Scene<'_>, pixel: [u16; 2]) -> Seen {
-    let (mut seen, mut place, mut ended) = (Seen::default(), Place::camera(0), false);
-    pixel::trace_telling(scene, pixel, 0, |met| {
+    let mut seen = Seen::default();
+    scene.samples().for_each(|sample| see(scene, pixel, sample, &mut seen));
+    seen
+}
+
+fn see(scene: &Scene<'_>, pixel: [u16; 2], sample: Sample, seen: &mut Seen) {
+    let (mut place, mut ended) = (Place::camera(sample.number.into()), false);
+    pixel::trace_telling(scene, pixel, sample, |met| {
         let sphere = &scene.spheres()[met.sphere];
         seen.surface(place, met.sphere as u32);
         let towards = |axis: usize| i64::from(met.point[axis] - sphere.centre[axis]) * i64::from(scene.light()[axis]);
@@ -72,12 +78,11 @@ fn seen(scene: &Scene<'_>, pixel: [u16; 2]) -> Seen {
             seen.light(place, 0);
         }
         place = place.mirrored();
-        ended = sphere.surface.mirror == [0; 3];
+        ended = !met.is_seen;
     });
     if !ended {
         seen.surface(place, NONE);
     }
-    seen
 }
 
 impl Engine for Planes12 {

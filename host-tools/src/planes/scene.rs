@@ -1,9 +1,9 @@
 //! A model in the tracer's words.
 
+use core_rt::samples::MAX_SAMPLES;
 use glam::DVec3;
 use planes_rt::camera::{Camera, FRACTION_BITS, Linear};
 use planes_rt::colour::{LIGHT_MAX, SHARE_ONE, Surface};
-use planes_rt::jitter::SAMPLES_MAX;
 use planes_rt::scene::{Outline, Scene, SceneError, Settings, Sphere};
 use planes_rt::widths::Widths;
 
@@ -111,17 +111,17 @@ impl Planes {
                 options.widths.determinant()
             ));
         }
-        let is_rough = spheres.iter().any(|sphere| sphere.surface.roughness > 0);
-        if model.render.paths {
-            warnings.push("planes12 traces no paths: it shows what lights send and mirrors".into());
-        }
         let settings = Settings {
             widths: options.widths,
             size: model.render.size.map(|side| side.min(u16::MAX.into()) as u16),
             generations: model.render.max_depth.saturating_add(1).min(u16::MAX.into()) as u16,
             outline: options.outline,
-            samples: if is_rough { model.render.samples.min(SAMPLES_MAX.into()) as u16 } else { 1 },
+            samples: model.render.samples.clamp(1, MAX_SAMPLES.into()) as u16,
+            paths: model.render.paths,
         };
+        if model.render.paths && sends_more_than_white(model) {
+            warnings.push("planes12 has no light beyond white, and the scene has; paths gather white there".into());
+        }
         let planes = Self {
             spheres,
             light,
@@ -213,13 +213,26 @@ fn surface(material: &Material, model: &Model, radiance: DVec3) -> Result<Surfac
         MaterialKind::Lambert => material.specular.map_or(DVec3::ONE, |specular| specular.colour),
     };
     let albedo = material.colour * diffuse;
+    // Paths gather what ambient light stands for.
+    let (matt, ambient) = if model.render.paths { (albedo, DVec3::ZERO) } else { (DVec3::ZERO, model.render.ambient) };
     let [roughness, ..] = words(DVec3::splat(if reflected > 0.0 { material.roughness } else { 0.0 }), SHARE_ONE);
     Ok(Surface {
         roughness,
         lit: words(albedo * radiance, LIGHT_MAX),
-        own: words(material.emission + albedo * model.render.ambient, LIGHT_MAX),
+        own: words(material.emission + albedo * ambient, LIGHT_MAX),
         mirror: words(tint * reflected, SHARE_ONE),
+        matt: words(matt, SHARE_ONE),
     })
+}
+
+/// Whether what paths would gather does not fit words of light.
+fn sends_more_than_white(model: &Model) -> bool {
+    let is_more = |colour: DVec3| colour.max_element() > 1.0;
+    let seen = match model.background {
+        Background::Colour(colour) => colour,
+        Background::Sky { bottom, top } => bottom.max(top),
+    };
+    model.spheres.iter().any(|sphere| is_more(model.materials[sphere.material as usize].emission)) || is_more(seen)
 }
 
 /// A colour in words, of which `one` is 1; more than that saturates.

@@ -8,7 +8,7 @@ use std::fmt::{self, Display, Formatter};
 use clap::ValueEnum;
 
 use super::row::{Machine, Point, Study, name};
-use crate::engine::{ENGINES, PLANES12};
+use crate::engine::{ENGINES, Engine, PLANES12};
 
 /// What is asked for. An empty list asks for all that there are.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -74,6 +74,10 @@ const HOST: [u32; 2] = [640, 480];
 /// Pictures of random samples, of which there may be a thousand a pixel, likewise.
 const RANDOM: [u32; 2] = [80, 64];
 
+/// Random samples a pixel of chips at most: with those of the built-in scene a picture would take QEMU an hour. How the error falls is
+/// measured on the host, whose picture a chip's is, bit for bit.
+const CHIP_SAMPLES: u32 = 4;
+
 /// How many times the samples of a picture the reference has where they are random: its own noise is half the picture's.
 const SURER: u32 = 4;
 
@@ -97,8 +101,21 @@ pub fn points(scene: &Traits, selection: &Selection) -> Vec<Point> {
     all
 }
 
+/// A scene of random samples as it is measured in time: in small pictures, and of few samples on a chip. Rows say both.
+fn in_time(scene: &Traits, selection: &Selection, machine: Machine) -> Traits {
+    let (mut scene, on_chip) = (scene.clone(), machine != Machine::Host);
+    if scene.is_random && (on_chip || selection.quick) {
+        scene.size = bounded(scene.size, RANDOM);
+    }
+    if scene.is_random && on_chip {
+        scene.samples = scene.samples.min(CHIP_SAMPLES);
+    }
+    scene
+}
+
 /// All points of a machine.
 fn of_machine(scene: &Traits, selection: &Selection, machine: Machine) -> Vec<Point> {
+    let scene = &in_time(scene, selection, machine);
     let small = bounded(scene.size, CHIP);
     let sizes = match (&selection.sizes[..], machine) {
         ([], Machine::Host) if !selection.quick => vec![bounded(scene.size, HOST), small],
@@ -110,10 +127,7 @@ fn of_machine(scene: &Traits, selection: &Selection, machine: Machine) -> Vec<Po
         if sizes[..place].contains(&size) {
             continue;
         }
-        // It has spheres alone.
-        let planes = (scene.triangles == 0 && scene.samples == 1 && !scene.is_random).then_some(PLANES12);
-        let kernels = ENGINES.into_iter().chain(planes);
-        all.extend(kernels.map(|engine| point(scene, Study::Kernels, engine.name(), machine, size)));
+        all.extend(kernels(scene).map(|engine| point(scene, Study::Kernels, engine.name(), machine, size)));
     }
     let size = sizes.into_iter().min_by_key(|&[width, height]| u64::from(width) * u64::from(height)).unwrap_or(small);
     let of = |study, kernel: &str| point(scene, study, kernel, machine, size);
@@ -134,6 +148,11 @@ fn of_machine(scene: &Traits, selection: &Selection, machine: Machine) -> Vec<Po
         Machine::Thumbv6m => is_common(point),
     });
     all
+}
+
+/// Those that a scene is for: that of 1994 has spheres alone.
+fn kernels(scene: &Traits) -> impl Iterator<Item = &'static dyn Engine> {
+    ENGINES.into_iter().chain((scene.triangles == 0).then_some(PLANES12))
 }
 
 /// Whether a point is measured on every machine.
@@ -169,7 +188,7 @@ fn random_samples(scene: &Traits, quick: bool, machine: Machine, size: [u32; 2])
         reference_samples: Some(SURER * most),
         ..point(scene, Study::Samples, kernel, machine, size)
     };
-    ENGINES.iter().flat_map(|engine| counts.iter().map(move |&samples| of(engine.name(), samples))).collect()
+    kernels(scene).flat_map(|engine| counts.iter().map(move |&samples| of(engine.name(), samples))).collect()
 }
 
 /// C, D and E, of the kernels that have them.
@@ -341,8 +360,31 @@ mod tests {
             assert!(all.iter().all(|point| point.reference_samples == most.map(|most| SURER * most)));
         }
         let kernels = Selection { studies: vec![Study::Kernels], ..Selection::default() };
-        assert!(points(&random, &kernels).iter().all(|point| point.reference_samples == Some(64)));
+        for point in points(&random, &kernels) {
+            // A chip would take hours for the host's.
+            let on_host = point.machine == Machine::Host;
+            let [samples, most] = if on_host { [16, 640] } else { [4, 80] };
+            assert_eq!((point.samples, point.reference_samples), (samples, Some(SURER * samples)), "{point}");
+            assert!(point.size[0] <= most, "{point}");
+        }
+        let asked = Selection { sizes: vec![[320, 240]], ..kernels.clone() };
+        assert!(points(&random, &asked).iter().all(|point| point.size == [320, 240]));
+        let quick = Selection { quick: true, ..Selection::default() };
+        assert!(points(&random, &quick).iter().all(|point| point.size[0] <= 80));
         assert!(points(&scene(), &Selection::default()).iter().all(|point| point.reference_samples.is_none()));
+    }
+
+    #[test]
+    fn the_tracer_of_spheres_is_asked_for_spheres_alone() {
+        let of = |triangles, is_random| {
+            let scene = Traits { triangles, is_random, samples: 4, fewest: triangles, ..scene() };
+            let all = points(&scene, &Selection::default());
+            let mine = all.into_iter().filter(|point| point.kernel == PLANES12.name());
+            mine.map(|point| point.study).collect::<std::collections::BTreeSet<_>>()
+        };
+        assert_eq!(of(1, true), [].into());
+        assert_eq!(of(0, false), [Study::Kernels].into());
+        assert_eq!(of(0, true), [Study::Kernels, Study::Samples].into());
     }
 
     #[test]

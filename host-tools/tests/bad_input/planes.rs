@@ -14,6 +14,13 @@ fn scenes_that_it_does_not_know() {
     let spheres = folder(SPHERE);
     spheres.succeeds("render scene.toml --kernel planes12 -o out.png", "");
     spheres.succeeds("pixel-planes scene.toml -o out.png", "");
+    spheres.succeeds("render scene.toml --kernel planes12 --samples 4 -o out.png", "");
+    spheres.succeeds("render scene.toml --kernel planes12 --samples 4 --paths -o out.png", "");
+    spheres.succeeds(
+        "pixel-planes scene.toml --samples 4 --paths -o out.png",
+        "warning: the machine is the text's, whose program follows no paths; `intray render --kernel planes12` does\n\
+         warning: the machine is the text's, with one ray through the middle of each pixel; `intray render --kernel planes12` has more\n",
+    );
     let triangles = folder("model = \"a.obj\"\n");
     for line in [
         "render scene.toml --kernel planes12 -o out.png",
@@ -43,13 +50,8 @@ fn scenes_that_it_does_not_know() {
         "error: --hits and --breakdown are of kernels with a tree; planes12 has neither\n",
     );
     spheres.refuses(
-        "render scene.toml --kernel planes12 --samples 4 -o out.png",
-        "error: planes12 has several samples of rough mirrors alone, and no material has a roughness; leave out --samples\n",
-    );
-    spheres.refuses(
         "render scene.toml --kernel planes12 --format rgb565 -o out.png",
-        "error: --leaf, --prefer, --grid-bits, --paths, --format and the knobs of arithmetic are other kernels'; planes12 has \
-         none of them\n",
+        "error: --leaf, --prefer, --grid-bits, --format and the knobs of arithmetic are other kernels'; planes12 has none of them\n",
     );
 }
 

@@ -4,6 +4,7 @@
 //! figures, and says by them alone which claims hold here.
 
 pub(crate) mod c_and_d;
+pub(crate) mod chance;
 pub(crate) mod degenerates;
 pub(crate) mod edge_shift;
 pub(crate) mod epsilon;

@@ -11,7 +11,7 @@ use host_tools::planes::scene::Options;
 use planes_rt::camera::{Camera, FRACTION_BITS, Linear};
 use planes_rt::colour::Surface;
 use planes_rt::pixel;
-use planes_rt::scene::{Outline, Scene, Settings, Sphere};
+use planes_rt::scene::{Outline, Sample, Scene, Settings, Sphere};
 use planes_rt::widths::Widths;
 use tests::planes::way;
 
@@ -51,14 +51,6 @@ pub(crate) struct Row {
     pub(crate) up_to_2: usize,
 }
 
-/// What there is beside the text.
-const ROUGH: &str = "\n## Rough mirrors\n\nThe text would like \"statistically-based random jittering of reflection rays\", several dozen samples a pixel. `planes12` has it \
-    where a mirror has a `roughness` (`docs/SHADING.md`): the reflected ray m goes on along m + r |m| s, for a point s of the unit \
-    sphere by a hash of pixel, sample and generation, is brought back to the length of m, and mirrored at the surface where it would go into it. \
-    So normals and rays stay in their words, processors need no generator, and no edge of a tile or a renderer shows. A pixel is the \
-    mean of the scene's `samples`, all through its middle. Lanes in lockstep, pixels one by one and both chips have the same \
-    bits; a scene without rough mirrors takes as long as before. The machine below has none: its program is the text's.\n";
-
 /// All figures.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Planes {
@@ -82,6 +74,7 @@ fn spheres() -> Vec<Sphere> {
             own: colour.map(|c| c * 100),
             mirror: [1024; 3],
             roughness: 0,
+            matt: [0; 3],
         },
     };
     CENTRES.into_iter().zip(colours).map(sphere).collect()
@@ -106,7 +99,7 @@ fn camera(size: [u16; 2], length: u16) -> Camera {
 
 fn settings(size: [u16; 2], t_bits: u32) -> Settings {
     let widths = Widths::new(12, 24, 36, t_bits).expect("bits in range");
-    Settings { widths, size, generations: 2, outline: Outline::Nearest, samples: 1 }
+    Settings { widths, size, generations: 2, outline: Outline::Nearest, samples: 1, paths: false }
 }
 
 fn scene(spheres: &[Sphere], camera: Camera, settings: Settings) -> Scene<'_> {
@@ -130,7 +123,7 @@ fn row(size: [u16; 2], length: u16, bits: u32) -> Row {
         let (origin, direction) = scene.ray(pixel);
         let real = way(&spheres, origin, direction, 2);
         let mut met = Vec::new();
-        pixel::trace_telling(&scene, pixel, 0, |one| met.push(one));
+        pixel::trace_telling(&scene, pixel, Sample::numbered(0), |one| met.push(one));
         let (Some(real_first), Some(first)) = (real.first(), met.first()) else { continue };
         if first.sphere != real_first.sphere {
             continue;
@@ -259,7 +252,6 @@ impl Planes {
              | ![literal](studies/planes-literal.png) | ![corrected](studies/planes-nearest.png) |\n",
             self.otherwise, self.covered
         );
-        text += ROUGH;
         text
     }
 }

@@ -17,7 +17,8 @@ use host_tools::planes::scene::{Options, Planes};
 use host_tools::planes::{Way, light, picture};
 use host_tools::prepare::Blob;
 use host_tools::{import, model};
-use planes_rt::blob::read;
+use planes_rt::blob::{ReadError, read};
+use planes_rt::scene::SceneError;
 use tests::boards::boards;
 use tests::random::SplitMix64;
 
@@ -51,7 +52,7 @@ fn boards_draw_the_host_s_picture_within_their_instructions() {
 }
 
 #[test]
-fn boards_draw_scenes_of_all_widths_outlines_and_mirrors_as_the_host_does() {
+fn boards_draw_scenes_of_all_widths_outlines_mirrors_and_paths_as_the_host_does() {
     let mut random = SplitMix64(6);
     let place = Grid { origin: DVec3::ZERO, scale: 1.0 };
     for board in boards() {
@@ -59,8 +60,10 @@ fn boards_draw_scenes_of_all_widths_outlines_and_mirrors_as_the_host_does() {
         for number in 0..6 {
             // Tiles and lanes beyond the picture are cut off.
             let mut parts = scenes::scene(&mut random, 9, [19, 21]);
-            if number % 2 == 1 {
-                scenes::roughen(&mut random, &mut parts);
+            match number % 3 {
+                1 => scenes::roughen(&mut random, &mut parts),
+                2 => scenes::follow_paths(&mut random, &mut parts),
+                _ => (),
             }
             let scene = parts.scene();
             let expected = picture(&scene, &light(&scene, Way::Pixels, &|_| ()), model::Transfer::Linear);
@@ -76,9 +79,13 @@ fn boards_draw_scenes_of_all_widths_outlines_and_mirrors_as_the_host_does() {
 fn a_blob_is_read_as_it_was_written_and_refused_where_a_bit_is_not() {
     let mut random = SplitMix64(9);
     let place = Grid { origin: DVec3::new(-1.0, 2.5, 0.0), scale: 7.0 };
-    for _ in 0..20 {
+    for number in 0..20 {
         let mut parts = scenes::scene(&mut random, 9, [16, 8]);
-        scenes::roughen(&mut random, &mut parts);
+        if number % 2 == 0 {
+            scenes::roughen(&mut random, &mut parts);
+        } else {
+            scenes::follow_paths(&mut random, &mut parts);
+        }
         let scene = parts.scene();
         let blob = blob(&scene, &place, Transfer::Linear);
         let (found, transfer) = read(blob.bytes()).unwrap();
@@ -97,6 +104,24 @@ fn a_blob_is_read_as_it_was_written_and_refused_where_a_bit_is_not() {
             assert!(read(Blob::from_bytes(&bytes[..place]).bytes()).is_err(), "cut at {place}");
         }
     }
+}
+
+#[test]
+fn what_goes_on_diffusely_is_refused_where_no_paths_are_followed() {
+    let mut random = SplitMix64(11);
+    let mut parts = scenes::scene(&mut random, 9, [16, 8]);
+    scenes::follow_paths(&mut random, &mut parts);
+    parts.spheres[0].surface.matt = [0, 0, 1];
+    let place = Grid { origin: DVec3::ZERO, scale: 1.0 };
+    let mut bytes = blob(&parts.scene(), &place, Transfer::Srgb).bytes().to_vec();
+    assert!(read(Blob::from_bytes(&bytes).bytes()).is_ok());
+    // The flag, behind the prefix; then the sum of all.
+    let flag = size_of::<core_rt::blob::Prefix>() + 132;
+    assert_eq!(core::mem::replace(&mut bytes[flag], 0), 1);
+    let summed = bytes.len() - 4;
+    let sum = core_rt::blob::crc32(&bytes[..summed]);
+    bytes[summed..].copy_from_slice(&sum.to_le_bytes());
+    assert_eq!(read(Blob::from_bytes(&bytes).bytes()).err(), Some(ReadError::Scene(SceneError::Sphere(0))));
 }
 
 #[test]

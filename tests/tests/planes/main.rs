@@ -4,12 +4,13 @@ mod chips;
 mod exact;
 mod machine;
 mod model;
+mod paths;
 mod scenes;
 
 use num::BigInt;
 use planes_rt::colour::Light;
 use planes_rt::pixel::{self, Met};
-use planes_rt::scene::{Outline, Scene, Settings};
+use planes_rt::scene::{Outline, Sample, Scene, Settings};
 use planes_simd::Lockstep;
 use tests::effort;
 use tests::random::SplitMix64;
@@ -22,7 +23,7 @@ fn pixels() -> impl Iterator<Item = [u16; 2]> {
 
 fn way(scene: &Scene<'_>, pixel: [u16; 2]) -> (Light, Vec<Met>) {
     let mut way = Vec::new();
-    let light = pixel::trace_telling(scene, pixel, 0, |met| way.push(met));
+    let light = pixel::trace_telling(scene, pixel, Sample::numbered(0), |met| way.push(met));
     (light, way)
 }
 

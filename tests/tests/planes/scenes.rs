@@ -44,6 +44,7 @@ pub(crate) fn scene(random: &mut SplitMix64, most: u64, size: [u16; 2]) -> Parts
         generations: 1 + random.below(5) as u16,
         outline: if random.coin() { Outline::Nearest } else { Outline::Literal },
         samples: 1,
+        paths: false,
     };
     let edge = i64::from(settings.widths.coordinate_max());
     let triple = |random: &mut SplitMix64, most: i64| [(); 3].map(|()| random.within([-most, most]) as i16);
@@ -58,6 +59,7 @@ pub(crate) fn scene(random: &mut SplitMix64, most: u64, size: [u16; 2]) -> Parts
                 own: colour(random, LIGHT_MAX / 8),
                 mirror: if random.below(4) == 0 { [0; 3] } else { colour(random, SHARE_ONE) },
                 roughness: 0,
+                matt: [0; 3],
             },
         }
     });
@@ -89,4 +91,22 @@ pub(crate) fn roughen(random: &mut SplitMix64, parts: &mut Parts) {
         }
     }
     parts.settings.samples = 1 + random.below(4) as u16;
+}
+
+/// Follows paths, from surfaces that are matt, mirrors, both or rough; of few samples.
+pub(crate) fn follow_paths(random: &mut SplitMix64, parts: &mut Parts) {
+    roughen(random, parts);
+    parts.settings.paths = true;
+    for sphere in &mut parts.spheres {
+        // To the end: surfaces that send on more than they get.
+        let least = if random.coin() { 0 } else { SHARE_ONE.into() };
+        let mut colour = || [(); 3].map(|()| random.within([least, SHARE_ONE.into()]) as u16);
+        (sphere.surface.matt, sphere.surface.mirror) = (colour(), colour());
+        match random.below(4) {
+            0 => sphere.surface.matt = [0; 3],
+            1 => sphere.surface.mirror = [0; 3],
+            2 => sphere.surface.roughness = 0,
+            _ => (),
+        }
+    }
 }

@@ -384,6 +384,8 @@ fn origin(report: &Report) -> Markup {
             ul {
                 li { "Error: against the reference, an independent f64 tracer, of the scene as it was given, at the same \
                       size, samples and depth." }
+                li { "Where samples are random, chips draw few of them, at most 4 a pixel, and small pictures: the column of samples \
+                      has how many." }
                 li { "Instructions: counted by QEMU, exactly, from the first camera ray of each tile to its last pixel." }
                 li { "Cycles: a model, named in its column. QEMU has no notion of a chip's pipeline or flash." }
                 li { "Time: of one thread on the host, every kernel taking its turn in each round; the ratio to f32 is of \
